@@ -1,0 +1,313 @@
+"""The vocabulary of a chapter: what an experiment, a recording, a claim, a reference and an erratum are.
+
+Everything here is a small value object without input or output. A chapter package offers::
+
+    TITLE = "Single-leader dual-follower manipulation"
+    EXPERIMENTS = (Experiment.of(movement_estimation), ...)      # modules, in the order of the book
+    CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES
+    ERRATA = errata.ERRATA
+
+and each experiment is one module with, in reading order, ``FIGURES``, ``TABLES``, ``simulate``, ``measure`` and,
+where they are needed, ``summarise``, ``draw``, ``tabulate`` and ``scene``; see :class:`Experiment`.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import NDArray
+
+Metrics = dict[str, float | int | None]
+
+
+class Config(dict[str, Any]):
+    """A resolved configuration: a dictionary whose keys are also attributes (``config.object.stiffness``)."""
+
+    def __getattr__(self, key: str) -> Any:
+        try:
+            return self[key]
+        except KeyError:
+            raise AttributeError(f"no configuration key '{key}'; there are: {', '.join(self)}") from None
+
+    @classmethod
+    def of(cls, value: Any) -> Any:
+        """Turn nested dictionaries (also those inside lists) into ``Config``; everything else is kept."""
+        if isinstance(value, Mapping):
+            return cls({key: cls.of(item) for key, item in value.items()})
+        if isinstance(value, list):
+            return [cls.of(item) for item in value]
+        return value
+
+
+@dataclass
+class Recording:
+    """What one case leaves behind.
+
+    series: channels sampled at the instants ``series["time"]`` [s], each of shape (n,) or (n, k). ``measure`` sees the
+        full rate; on disk they are kept at the experiment's ``RATE``.
+    frames: anything else that ``draw`` or ``tabulate`` needs, as data frames (a sweep, a learning curve, a field).
+    images: pictures of shape (height, width, 3), unsigned bytes.
+    steps: physics (or algorithm) steps taken; simulated: simulated time [s], 0 where nothing moves in time.
+    status: "finished", or the reason why a stop condition ended the run early.
+    """
+
+    series: dict[str, NDArray[Any]] = field(default_factory=dict)
+    frames: dict[str, pd.DataFrame] = field(default_factory=dict)
+    images: dict[str, NDArray[np.uint8]] = field(default_factory=dict)
+    steps: int = 0
+    simulated: float = 0.0
+    status: str = "finished"
+
+    def __getitem__(self, channel: str) -> NDArray[Any]:
+        return self.series[channel]
+
+    def __contains__(self, channel: str) -> bool:
+        return channel in self.series
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Sampling instants [s], shape (n,)."""
+        return self.series["time"]
+
+    def between(self, start: float, end: float = math.inf) -> NDArray[np.bool_]:
+        """Mask of the samples with start <= time <= end [s]."""
+        return (self.time >= start - 1e-9) & (self.time <= end + 1e-9)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """What surrounds a figure: caption (what was simulated, what the book shows) and one-sentence alternative text."""
+
+    caption: str
+    alt: str = ""
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One section's simulations. All functions but ``simulate`` and ``measure`` are optional.
+
+    simulate(config, rng) -> Recording: one case. ``config`` is resolved, its ``_target_`` nodes are live objects,
+        ``config.perturbation`` [rad, or share of the data's range] is to be added to the initial state, and ``rng``
+        gives a generator for a named purpose: ``rng("noise")``. Compared cases share the noise of a purpose.
+    measure(recording, config) -> {metric: number}: at the full rate, in the case's own process.
+    summarise(metrics, config) -> {metric: number}: numbers over several cases, from ``{case: {metric: number}}``.
+    draw(recordings, metrics, config) -> {figure id: matplotlib Figure}: from what is on disk alone. A figure whose
+        cases are missing is left out.
+    tabulate(recordings, metrics, config) -> {table id: DataFrame}: likewise.
+    scene(config) -> World: the scene without its laws, so that any recorded instant can be rendered.
+    """
+
+    name: str
+    summary: str
+    figures: Mapping[str, Figure]
+    tables: Mapping[str, str]
+    rate: float
+    module: ModuleType
+    requires: tuple[str, ...]
+
+    @classmethod
+    def of(cls, module: ModuleType) -> Experiment:
+        """Describe the experiment that a module defines; its name is the module's."""
+        return cls(
+            name=module.__name__.rpartition(".")[2],
+            summary=(module.__doc__ or "").strip().partition("\n")[0],
+            figures=getattr(module, "FIGURES", {}),
+            tables=getattr(module, "TABLES", {}),
+            rate=getattr(module, "RATE", 100.0),
+            module=module,
+            requires=tuple(getattr(module, "REQUIRES", ())),
+        )
+
+    def has(self, function: str) -> bool:
+        return hasattr(self.module, function)
+
+
+@dataclass(frozen=True)
+class Predicate:
+    """A statement about metrics.
+
+    margin(metrics) is positive when the statement holds, negative when it fails, None when a metric is absent.
+    """
+
+    text: str
+    metrics: tuple[str, ...]
+    margin_of: Callable[[Sequence[float]], float]
+
+    def margin(self, values: Mapping[str, float | int | None]) -> float | None:
+        found = [values.get(name) for name in self.metrics]
+        numbers = [float(value) for value in found if value is not None]
+        return self.margin_of(numbers) if len(numbers) == len(found) else None
+
+    def __str__(self) -> str:
+        return self.text
+
+
+def _relative_gap(smaller: float, larger: float) -> float:
+    scale = max(abs(smaller), abs(larger))
+    return (larger - smaller) / scale if scale > 0 else 0.0
+
+
+def _operand(value: str | float, factor: float) -> str:
+    if not isinstance(value, str):
+        return f"{value * factor:g}"
+    return value if factor == 1 else f"{factor:g} {value}"
+
+
+def less(a: str, b: str | float, factor: float = 1.0) -> Predicate:
+    """a < factor * b, where b is a metric or a number. Margin (factor b - a) / max(|a|, |factor b|)."""
+    if isinstance(b, str):
+        return Predicate(f"{a} < {_operand(b, factor)}", (a, b), lambda v: _relative_gap(v[0], factor * v[1]))
+    bound = factor * b
+    return Predicate(f"{a} < {bound:g}", (a,), lambda v: _relative_gap(v[0], bound))
+
+
+def greater(a: str, b: str | float, factor: float = 1.0) -> Predicate:
+    """a > factor * b, where b is a metric or a number. Margin (a - factor b) / max(|a|, |factor b|)."""
+    if isinstance(b, str):
+        return Predicate(f"{a} > {_operand(b, factor)}", (a, b), lambda v: _relative_gap(factor * v[1], v[0]))
+    bound = factor * b
+    return Predicate(f"{a} > {bound:g}", (a,), lambda v: _relative_gap(bound, v[0]))
+
+
+def within(a: str, low: float, high: float) -> Predicate:
+    """low <= a <= high. Margin: distance to the nearer bound over the width."""
+    if not low < high:
+        raise ValueError(f"within({a}): the lower bound {low} is not below the upper bound {high}")
+    return Predicate(f"{low:g} <= {a} <= {high:g}", (a,), lambda v: min(v[0] - low, high - v[0]) / (high - low))
+
+
+def ordered(*names: str) -> Predicate:
+    """The metrics increase in the order given. Margin: the smallest of the neighbours' margins."""
+    return Predicate(
+        " < ".join(names), names, lambda v: min(_relative_gap(a, b) for a, b in itertools.pairwise(v))
+    )
+
+
+def every(*predicates: Predicate) -> Predicate:
+    """All predicates hold. Margin: the smallest of their margins."""
+    names = tuple(name for predicate in predicates for name in predicate.metrics)
+
+    def margin_of(values: Sequence[float]) -> float:
+        it: Iterator[float] = iter(values)
+        return min(p.margin_of([next(it) for _ in p.metrics]) for p in predicates)
+
+    return Predicate("; ".join(map(str, predicates)), names, margin_of)
+
+
+REPRODUCED = "reproduced"
+AFTER_CORRECTION = "after correction"
+NOT_REPRODUCED = "not reproduced"
+NOT_TESTABLE = "not testable"
+NOT_EVALUATED = "not evaluated"
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What the book says (or, with source "ours", a test that it does not make), as a predicate over metrics.
+
+    Metric names are ``experiment.case.metric`` or, from ``summarise``, ``experiment.metric``; all of a claim's metrics
+    belong to one experiment. ``printed`` is the same statement about the printed form of an equation that an erratum
+    corrects; where it fails and the corrected form holds, the verdict is "after correction". ``not_testable`` gives the
+    reason why nothing can be measured; ``by_construction`` the generator that has the effect built in; ``note`` says
+    what a reader must know beside the verdict.
+    """
+
+    id: str
+    figure: str
+    statement: str
+    predicate: Predicate | None
+    source: str = "book"
+    printed: Predicate | None = None
+    by_construction: str = ""
+    not_testable: str = ""
+    note: str = ""
+    where: str = ""
+
+    def __post_init__(self) -> None:
+        if (self.predicate is None) != bool(self.not_testable):
+            raise ValueError(f"{self.id}: give either a predicate or the reason why it cannot be tested")
+
+    @property
+    def metrics(self) -> tuple[str, ...]:
+        printed = self.printed.metrics if self.printed else ()
+        return (*self.predicate.metrics, *printed) if self.predicate else ()
+
+    @property
+    def experiment(self) -> str:
+        """Name of the experiment whose metrics the claim is about ("" for one that is not testable)."""
+        return self.metrics[0].partition(".")[0] if self.metrics else ""
+
+    def evaluate(self, metrics: Mapping[str, float | int | None]) -> dict[str, Any]:
+        """Verdict, margin and the values they rest on."""
+        margin = self.predicate.margin(metrics) if self.predicate else None
+        printed = self.printed.margin(metrics) if self.printed else None
+        if self.predicate is None:
+            verdict = NOT_TESTABLE
+        elif margin is None or (self.printed and printed is None):
+            verdict = NOT_EVALUATED
+        elif not margin > 0:
+            verdict = NOT_REPRODUCED
+        elif printed is not None and not printed > 0:
+            verdict = AFTER_CORRECTION
+        else:
+            verdict = REPRODUCED
+        return {
+            "id": self.id,
+            "figure": self.figure,
+            "statement": self.statement,
+            "source": self.source,
+            "where": self.where,
+            "predicate": str(self.predicate or ""),
+            "values": {name: metrics.get(name) for name in dict.fromkeys(self.metrics)},
+            "verdict": verdict,
+            "margin": margin,
+            "printed_margin": printed,
+            "by_construction": self.by_construction,
+            "reason": self.not_testable,
+            "note": self.note,
+        }
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A number the book prints, to be shown beside the metric that corresponds to it."""
+
+    metric: str
+    value: float
+    where: str
+    unit: str = ""
+
+
+ERRATUM_KINDS = ("error", "gap", "reading", "slip")
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """Something in the book that a reader who implements it must know.
+
+    kind: "error" (inconsistent with the book's own equations), "gap" (something needed is not printed), "reading"
+        (defensible as printed under the reading named) or "slip" (typesetting, possibly text extraction).
+    switch: the exact override that selects the printed form ("" where it does not run).
+    evidence: names of the metrics that show the effect.
+    """
+
+    id: str
+    equation: str
+    kind: str
+    summary: str
+    correction: str = ""
+    switch: str = ""
+    evidence: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.kind not in ERRATUM_KINDS:
+            raise ValueError(f"{self.id}: kind '{self.kind}' is none of {', '.join(ERRATUM_KINDS)}")
