@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pybullet as bullet
@@ -249,14 +249,40 @@ class SimulatedArm(Point):
 
     def _feel(self) -> None:
         """Add last step's contact forces on the last moving link and what it carries to the sensed force."""
-        for contact in bullet.getContactPoints(bodyA=self.body, physicsClientId=self.client):
-            if contact[3] < self.dof - 1:
-                continue
-            normal, first, second = contact[7], contact[11], contact[13]
-            f, g, h = contact[9], contact[10], contact[12]
-            self.fx += f * normal[0] + g * first[0] + h * second[0]
-            self.fy += f * normal[1] + g * first[1] + h * second[1]
-            self.fz += f * normal[2] + g * first[2] + h * second[2]
+        touching = [touch for touch in touches(self.client, self.body) if touch.link >= self.dof - 1]
+        self.fx += sum(touch.force[0] for touch in touching)
+        self.fy += sum(touch.force[1] for touch in touching)
+        self.fz += sum(touch.force[2] for touch in touching)
+
+
+class Touch(NamedTuple):
+    """A contact point of a body: its own link, the other body, place [m], normal force [N] and whole force (3,) [N]
+    on the body, friction included, world frame."""
+
+    link: int
+    other: int
+    position: tuple[float, float, float]
+    normal_force: float
+    force: tuple[float, float, float]
+
+
+def touches(client: int, body: int) -> list[Touch]:
+    """Contact points of a body as of the last step.
+
+    The engine is asked for all of its points: when it is asked for one body's, it turns the normal but not the
+    directions of friction where that body is the second of a pair.
+    """
+    result = []
+    for point in bullet.getContactPoints(physicsClientId=client):
+        if body not in point[1:3]:
+            continue
+        first = point[1] == body
+        sign = 1.0 if first else -1.0
+        parts = ((point[9], point[7]), (point[10], point[11]), (point[12], point[13]))
+        x, y, z = (sign * sum(size * direction[i] for size, direction in parts) for i in range(3))
+        link, other = (point[3], point[2]) if first else (point[4], point[1])
+        result.append(Touch(link, other, point[6], point[9], (x, y, z)))
+    return result
 
 
 class EndPoint:
