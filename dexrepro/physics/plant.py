@@ -119,7 +119,6 @@ class SimulatedArm(Point):
         self.dq: list[float] = []
         self.torque: Any = self._zeros
         self.fx = self.fy = self.fz = 0.0
-        self._unsensed = (0.0, 0.0, 0.0)
         self._located = False
         self.reset(position)
         self.sense = Sense(self)
@@ -132,7 +131,8 @@ class SimulatedArm(Point):
         self.read()
 
     def prepare(self, period: float) -> None:
-        """Set up the sensors for a run with a control period [s]."""
+        """Set up the sensors for a run with a control period [s], and let go of any torque of a run before."""
+        self.torque = self._zeros
         sensor = self._sensor
         self.force_channel = None if sensor.exact_force else ForceChannel(sensor, period, self._rng)
         self.joint_channel = None if sensor.exact_joints else JointChannel(sensor, period, self._rng)
@@ -144,7 +144,6 @@ class SimulatedArm(Point):
         self.dq = [state[1] for state in states]
         self._located = False
         self.fx = self.fy = self.fz = 0.0
-        self._unsensed = (0.0, 0.0, 0.0)
         self.load = self._zeros
         if self.feels_contact:
             self._feel()
@@ -157,8 +156,11 @@ class SimulatedArm(Point):
         if self._planar is not None:
             self._levers = levers = self._planar.levers(self.q)
             self.x, self.y = self._planar.base[0] + levers[0][0], self._planar.base[1] + levers[0][1]
-            self.vx = -sum(rate * y for rate, (_, y) in zip(self.dq, levers))
-            self.vy = sum(rate * x for rate, (x, _) in zip(self.dq, levers))
+            vx = vy = 0.0
+            for rate, (x, y) in zip(self.dq, levers):
+                vx -= rate * y
+                vy += rate * x
+            self.vx, self.vy = vx, vy
             return
         state = bullet.getLinkState(self.body, self.end.link, 1, 1, physicsClientId=self.client)
         (cx, cy, cz), (rx, ry, rz) = state[0], _rotated(state[1], self.end.from_com)

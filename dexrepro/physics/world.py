@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import pybullet as bullet
@@ -16,7 +16,7 @@ from dexrepro.physics.loading import connect, undamped
 from dexrepro.physics.plant import Controller, Point, RigidBody, SimulatedArm, Touch, touches
 from dexrepro.physics.rendering import Camera, photograph
 from dexrepro.physics.sensor import Sensor
-from dexrepro.robots.arm import GREY, Arm, Colour, Shape
+from dexrepro.robots.arm import GREY, Arm, Colour, Pose, Shape
 
 Vector = Sequence[float]
 SHAPES = {"box": bullet.GEOM_BOX, "sphere": bullet.GEOM_SPHERE, "cylinder": bullet.GEOM_CYLINDER,
@@ -35,9 +35,11 @@ class World:
     """One physics client of its own, closed at the end of a ``with`` block; several may live side by side.
 
     step: physics step [s]; gravity: (3,) [m/s^2]; perturbation: added to every initial joint angle [rad];
-    gui: open a window and run in real time; iterations: of the contact solver.
-    The world frame has z up; positions in m, forces in N.
+    gui: open a window and run in real time (also where ``World.windowed`` is set, for all worlds of a process);
+    iterations: of the contact solver. The world frame has z up; positions in m, forces in N.
     """
+
+    windowed: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -47,9 +49,9 @@ class World:
         gui: bool = False,
         iterations: int = 50,
     ) -> None:
-        self.step, self.time, self.gui = step, 0.0, gui
+        self.step, self.time, self.gui = step, 0.0, gui or World.windowed
         self.perturbation = perturbation
-        self.client = connect(gui)
+        self.client = connect(self.gui)
         bullet.setGravity(*gravity, physicsClientId=self.client)
         bullet.setPhysicsEngineParameter(
             fixedTimeStep=step, numSubSteps=0, numSolverIterations=iterations, deterministicOverlappingPairs=1,
@@ -139,6 +141,26 @@ class World:
     ) -> RigidBody:
         """A sphere of a radius [m], centred at a position [m]; options as for add_body."""
         return self.add_body(name, [Shape("sphere", (radius,), colour=colour)], position, mass=mass, **options)
+
+    def add_opening(
+        self,
+        name: str,
+        size: tuple[float, float],
+        position: Vector,
+        rim: float = 0.05,
+        depth: float = 0.01,
+        colour: Colour = GREY,
+        **options: Any,
+    ) -> RigidBody:
+        """A static frame around a rectangular hole of a size (x, y) [m] in the plane z of its own frame.
+
+        rim: width of the frame around the hole [m]; depth: its thickness [m]; options as for add_body (rpy turns it).
+        """
+        x, y = size
+        beams = [((x + rim) / 2 * side, 0.0, 0.0, rim, y) for side in (-1, 1)]
+        beams += [(0.0, (y + rim) / 2 * side, 0.0, x + 2 * rim, rim) for side in (-1, 1)]
+        shapes = [Shape("box", (long, wide, depth), Pose((a, b, c)), colour) for a, b, c, long, wide in beams]
+        return self.add_body(name, shapes, position, **options)
 
     def hang(
         self,

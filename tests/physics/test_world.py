@@ -329,3 +329,17 @@ def test_tip_velocity_is_the_jacobian_times_the_joint_rates(first, second, rate)
         plant.reset([first, second], [rate, -rate])
         expected = jacobian(arm, [first, second])[:3] @ [rate, -rate]
         np.testing.assert_allclose(plant.sense.tip_velocity, expected, atol=1e-12)
+
+
+def test_torque_of_one_run_is_not_carried_into_the_next():
+    with World(gravity=FLAT) as world:
+        world.add_arm("arm", planar(*BOOK), FOLLOWER)
+        world.run(0.01, {"arm": lambda s: np.ones(3)})
+        assert (world.run(0.01)["arm.torque"] == 0).all()
+
+
+def test_probes_with_memory_are_asked_once_a_sample():
+    asked = []
+    with World() as world:
+        run = world.run(0.01, probes={"count": lambda: asked.append(1) or len(asked)})
+    np.testing.assert_array_equal(run["count"], np.arange(1, 11))
