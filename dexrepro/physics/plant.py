@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from dexrepro.physics.loading import load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import PlanarChain, forward
+from dexrepro.robots.kinematics import PlanarTip, forward
 
 
 class Point:
@@ -111,7 +111,7 @@ class SimulatedArm(Point):
         self.force_channel: ForceChannel | None = None
         self.joint_channel: JointChannel | None = None
         self.end = EndPoint(client, self.body, arm)
-        self._planar = PlanarChain(arm) if arm.is_planar else None
+        self._planar = PlanarTip(arm) if arm.is_planar else None
         self._levers: list[tuple[float, float]] = []
         self.z = self._planar.height if self._planar else 0.0
         self.load = self._zeros

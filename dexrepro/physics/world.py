@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pybullet as bullet
@@ -35,11 +35,11 @@ class World:
     """One physics client of its own, closed at the end of a ``with`` block; several may live side by side.
 
     step: physics step [s]; gravity: (3,) [m/s^2]; perturbation: added to every initial joint angle [rad];
-    gui: open a window and run in real time (also where ``World.windowed`` is set, for all worlds of a process);
-    iterations: of the contact solver. The world frame has z up; positions in m, forces in N.
+    gui: open a window and run in real time; iterations: of the contact solver.
+    The world frame has z up; positions in m, forces in N. Setting ``World.live`` makes every world open a window.
     """
 
-    windowed: ClassVar[bool] = False
+    live = False
 
     def __init__(
         self,
@@ -49,7 +49,7 @@ class World:
         gui: bool = False,
         iterations: int = 50,
     ) -> None:
-        self.step, self.time, self.gui = step, 0.0, gui or World.windowed
+        self.step, self.time, self.gui = step, 0.0, gui or World.live
         self.perturbation = perturbation
         self.client = connect(self.gui)
         bullet.setGravity(*gravity, physicsClientId=self.client)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import PlanarChain, forward, jacobian, rotation_error
+from dexrepro.robots.kinematics import PlanarTip, forward, jacobian, rotation_error
 
 Array = NDArray[np.float64]
 Place = Sequence[float] | Array
@@ -59,7 +59,7 @@ class InverseKinematics:
         self.gain, self.period, self.damping, self.rest_gain = gain, period, damping, rest_gain
         self.rest = None if rest is None else np.asarray(rest, dtype=float)
         self._kinematics = kinematics or _Description(arm)
-        self._planar = PlanarChain(arm) if arm.is_planar and task == "position" else None
+        self._planar = PlanarTip(arm) if arm.is_planar and task == "position" else None
         self._limited = bool(np.isfinite([arm.lower, arm.upper, arm.speed]).any())
         self.position = np.zeros(arm.dof)
         self.velocity = np.zeros(arm.dof)

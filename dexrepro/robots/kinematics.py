@@ -67,7 +67,7 @@ def rotation_error(desired: ArrayLike, actual: ArrayLike) -> Array:
     return Rotation.from_matrix(difference.reshape(-1, 3, 3)).as_rotvec().reshape(difference.shape[:-1])
 
 
-class PlanarChain:
+class PlanarTip:
     """Closed forms for one state of a planar arm in plain floats, for loops at 1 kHz."""
 
     def __init__(self, arm: Arm) -> None:
