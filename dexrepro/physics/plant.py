@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from dexrepro.physics.loading import load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import PlanarTip, forward
+from dexrepro.robots.kinematics import PlanarTip, forward, jacobian
 
 
 class Point:
@@ -81,9 +81,12 @@ class Sense:
 
     @property
     def tip_velocity(self) -> NDArray[np.float64]:
-        """Velocity of the end point, shape (3,), world frame [m/s], from exact joint rates."""
-        self._plant.locate()
-        return np.array((self._plant.vx, self._plant.vy, self._plant.vz))
+        """Velocity of the end point, shape (3,), world frame [m/s], from the measured joint angles and rates."""
+        plant = self._plant
+        if plant.joint_channel is None:
+            plant.locate()
+            return np.array((plant.vx, plant.vy, plant.vz))
+        return jacobian(plant.arm, self.position)[:3] @ self.velocity
 
 
 class SimulatedArm(Point):

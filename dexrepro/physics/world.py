@@ -299,6 +299,17 @@ class World:
         found = touches(self.client, self._body(first))
         return found if second is None else [touch for touch in found if touch.other == self._body(second)]
 
+    def snapshot(
+        self, recording: Recording, time: float, camera: Camera = Camera(), size: tuple[int, int] = (640, 480)
+    ) -> NDArray[np.uint8]:
+        """Picture (height, width, 3) of the sample of a recording that is nearest to a time [s]."""
+        index = int(np.abs(recording.time - time).argmin())
+        positions = {
+            name: recording[f"{name}.position"][index] for name in self.arms if f"{name}.position" in recording
+        }
+        poses = {name: recording[f"{name}.pose"][index] for name in self.bodies if f"{name}.pose" in recording}
+        return self.render(positions, poses, camera, size)
+
     def _body(self, name: str) -> int:
         return self.bodies[name].body if name in self.bodies else self.arm(name).body
 

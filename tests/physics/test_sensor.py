@@ -66,3 +66,14 @@ def test_measured_tip_follows_the_measured_angles():
         world.add_arm("arm", planar([1.0], [1.0]), [0.0123], sensor=Sensor(encoder_resolution=0.01))
         world.run(0.001, {"arm": lambda s: tips.append(s.tip) or np.zeros(1)})
     np.testing.assert_allclose(tips[0], (np.cos(0.01), np.sin(0.01), 0), atol=1e-12)
+
+
+def test_measured_tip_velocity_rests_on_measured_rates():
+    rng, speeds = np.random.default_rng(0), []
+    with World(gravity=(0, 0, 0)) as world:
+        arm = planar([1.0], [1.0])
+        world.add_arm("arm", arm, [0.0], sensor=Sensor(velocity_noise=0.1), rng=rng)
+        world.run(0.01, {"arm": lambda s: speeds.append((s.tip_velocity[1], s.velocity[0])) or np.zeros(1)})
+    measured, rates = np.array(speeds).T
+    np.testing.assert_allclose(measured, rates, atol=1e-12)
+    assert np.ptp(rates) > 0.05
