@@ -233,18 +233,21 @@ class SimulatedArm(Point):
         """
         body, client = self.body, self.client
         damping = np.asarray(damping, dtype=float)
-        matrix = np.diag(damping) if damping.ndim == 1 else damping
+        multiply = np.multiply if damping.ndim == 1 else np.matmul
         rate = np.array(self.dq)
         mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client))
         bias = np.array(bullet.calculateInverseDynamics(body, self.q, self.dq, self._zeros, physicsClientId=client))
-        rest = torque + self.load - bias - matrix @ rate
+        rest = torque + self.load - bias - multiply(damping, rate)
         if self._planar is None and (self.fx or self.fy or self.fz):
             linear, _ = bullet.calculateJacobian(
                 body, self.end.link, self.end.for_jacobian, self.q, self.dq, self._zeros, physicsClientId=client
             )
             rest += np.array((self.fx, self.fy, self.fz)) @ np.array(linear)
-        acceleration = np.linalg.solve(mass + step * matrix, rest)
-        return torque - matrix @ (rate + step * acceleration)
+        if damping.ndim == 1:
+            mass.flat[:: self.dof + 1] += step * damping
+        else:
+            mass += step * damping
+        return torque - multiply(damping, rate + step * np.linalg.solve(mass, rest))
 
     def _act(self, fx: float, fy: float, fz: float) -> None:
         self.locate()
