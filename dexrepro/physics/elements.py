@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from dexrepro.physics.plant import Point, SimulatedArm
+from dexrepro.physics.plant import Point, RigidBody, SimulatedArm
 
 Place = str | Sequence[float]
 Force = Sequence[float] | NDArray[np.float64]
@@ -168,6 +168,27 @@ class Push:
 
     def channels(self) -> dict[str, float]:
         return dict(zip("xyz", self.force, strict=True))
+
+
+class Carried:
+    """A static body that somebody carries along a path: ``path``(time) -> position (x, y, z) [m]. Channels: x, y, z [m]."""
+
+    def __init__(self, body: str, path: Callable[[float], tuple[float, float, float]]) -> None:
+        self.name, self._path, self.position = body, path, (0.0, 0.0, 0.0)
+
+    def bind(self, world: Ends) -> Callable[[float], None]:
+        body, path = world.end(self.name), self._path
+        if not isinstance(body, RigidBody) or body.mass > 0:
+            raise ValueError(f"'{self.name}' is not a static body, so it cannot be carried")
+
+        def apply(time: float) -> None:
+            self.position = path(time)
+            body.place(self.position)
+
+        return apply
+
+    def channels(self) -> dict[str, float]:
+        return dict(zip("xyz", self.position, strict=True))
 
 
 class JointLoad:
