@@ -58,7 +58,7 @@ def orientation(recording: Recording, config: Config) -> Any:
     from dexrepro.report import style
 
     index = int(np.abs(recording.time - config.phases[0] / 2).argmin())
-    tip, rotation = forward(gripper_arm(config.tool_length), recording[f"{ARM}.position"][index])
+    tip, rotation = forward(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])
     centre, target = np.array(config.centre), np.array(config.target)
     wanted = tool_axis(centre, centre, target, config.lever)
     figure, axes = _space(style)
@@ -79,7 +79,7 @@ def shortest_distance(recording: Recording, config: Config) -> Any:
 
     time = config.phases[0] + config.phases[1] / 2
     index = int(np.abs(recording.time - time).argmin())
-    corners = centreline(gripper_arm(config.tool_length), recording[f"{ARM}.position"][index])
+    corners = centreline(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])
     centre = np.array(config.centre)
     _, foot = closest_point(centre, list(corners))
     figure, axes = _space(style)

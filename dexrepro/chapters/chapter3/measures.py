@@ -17,12 +17,12 @@ def add_distances(recording: Recording, config: Config, centres: Array) -> None:
     """Add what the book plots: ``error``, the distance of the tip to the target, and ``rcm_distance``, Dis_R [m]."""
     recording.series["error"] = np.linalg.norm(recording[f"{ARM}.tip"] - np.array(config.target), axis=1)
     positions = recording[f"{ARM}.position"]
-    recording.series["rcm_distance"] = distance_to_centre(gripper_arm(config.tool_length), positions, centres)
+    recording.series["rcm_distance"] = distance_to_centre(gripper_arm(config.gripper), positions, centres)
 
 
 def reach_metrics(recording: Recording, config: Config) -> Metrics:
     """Errors and distances [m] of one run; "inside" is everything after the tip has reached the opening."""
-    arm, positions = gripper_arm(config.tool_length), recording[f"{ARM}.position"]
+    arm, positions = gripper_arm(config.gripper), recording[f"{ARM}.position"]
     inside = recording.between(config.phases[0])
     distance, contact = recording["rcm_distance"], recording["contact"]
     finished = recording.status == "finished" and bool(inside.any())

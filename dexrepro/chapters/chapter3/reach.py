@@ -93,7 +93,7 @@ class Reach:
     """
 
     def __init__(self, config: Config, centre: Callable[[float], Array], applied: Callable[[], Any]) -> None:
-        self.arm = gripper_arm(config.tool_length)
+        self.arm = gripper_arm(config.gripper)
         self.model = RigidBodyModel(self.arm, mass_error=config.model.mass_error)
         self.config, self.law, self.observer = config, config.law, config.observer
         self._centre, self._applied = centre, applied

@@ -29,15 +29,15 @@ CAMERA = Camera(target=(0.6, -0.15, 0.1), distance=1.6, yaw=40.0, pitch=-25.0)
 
 
 @cache
-def gripper_arm(tool_length: float) -> Arm:
-    """Baxter's right arm with a straight, massless gripper of some length [m]."""
-    return baxter("right", extension(tool_length))
+def gripper_arm(length: float) -> Arm:
+    """Baxter's right arm with a straight, massless gripper that ends some length [m] beyond the flange's end point."""
+    return baxter("right", extension(length) if length else None)
 
 
 @cache
-def start_posture(tool_length: float, lift: float) -> tuple[float, ...]:
+def start_posture(length: float, lift: float) -> tuple[float, ...]:
     """Joint angles [rad] of the untucked arm with its end point raised by ``lift`` [m], orientation kept."""
-    arm, untucked = gripper_arm(tool_length), posture("right")
+    arm, untucked = gripper_arm(length), posture("right")
     position, rotation = forward(arm, untucked)
     goal = position + np.array((0.0, 0.0, lift))
     return tuple(solve(arm, goal, rotation, untucked, "pose", rest=untucked, rest_gain=0.1).tolist())
@@ -50,8 +50,8 @@ def build(config: Config, centre: Callable[[float], Array] | None = None) -> Wor
     world.add_body("torso", torso(), (0.0, 0.0, 0.0), collides=False)
     if config.box.cube:
         world.add_box("cube", (config.box.cube,) * 3, config.target, colour=CUBE, collides=False)
-    start = start_posture(config.tool_length, config.lift)
-    world.add_arm(ARM, gripper_arm(config.tool_length), start, contacts=config.box.touchable)
+    start = start_posture(config.gripper, config.lift)
+    world.add_arm(ARM, gripper_arm(config.gripper), start, contacts=config.box.touchable)
     return world
 
 
@@ -129,4 +129,5 @@ class Touching:
             self._clearance = min(self._world.distance(ARM, name, 0.2) for name in ("lid", "box"))
         self._calls += 1
         touches = self._world.contacts(ARM) if self._clearance < 0.02 else []
-        return float(len(touches)), sum(touch.force for touch in touches), self._clearance
+        forces = [touch.force for touch in touches if touch.force > 0.0]
+        return float(len(forces)), sum(forces), self._clearance
