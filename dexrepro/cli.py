@@ -75,6 +75,9 @@ def _parser() -> argparse.ArgumentParser:
     report = commands.add_parser("report", parents=[selection], help="build the HTML page from files")
     report.set_defaults(function=report_command)
 
+    study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
+    study.set_defaults(function=study_command)
+
     diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
     diff.add_argument("a", type=Path)
     diff.add_argument("b", type=Path)
@@ -264,15 +267,15 @@ def _print_summary(outcome: Any) -> None:
 # --------------------------------------------------------------------------------------------------- other commands
 
 
-def _selected(options: argparse.Namespace) -> tuple[list[str], Path, list[str]]:
+def _selected(options: argparse.Namespace, extra: Sequence[str] = ()) -> tuple[list[str], Path, list[str]]:
     """Chapters, results folder and experiments from ``chapter=N results=DIR only=NAME``."""
     from dexrepro.config import InputError
 
     overrides = [quoted(text) for text in options.selection]
     for text in overrides:
-        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers"):
+        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers", *extra):
             raise InputError(f"'{text}' has no meaning here; use chapter=N, only=EXPERIMENT, figure=ID or results=DIR")
-    numbers, rest = chapters_of(overrides)
+    numbers, rest = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
     values = dict(text.partition("=")[::2] for text in rest)
     only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]
     options.workers = positive_workers(int(values["workers"]) if values.get("workers", "").isdigit() else None)
@@ -356,6 +359,28 @@ def report_command(options: argparse.Namespace) -> int:
 
     _, results, _ = _selected(options)
     out.print(str(page.build(results)), markup=False)
+    return OK
+
+
+def study_command(options: argparse.Namespace) -> int:
+    """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=200] [hours=H]``."""
+    from dexrepro import study
+    from dexrepro.config import InputError
+
+    numbers, results, only = _selected(options, ("claim", "samples", "hours"))
+    values = dict(text.partition("=")[::2] for text in options.selection)
+    try:
+        samples, hours = int(values.get("samples", 200)), float(values.get("hours", 0)) or None
+    except ValueError as error:
+        raise InputError("samples must be a whole number and hours a number") from error
+    for number in numbers:
+        for name in study.experiments_of(number, only, values.get("claim")):
+            path = study.run(number, name, samples, results, workers=options.workers, hours=hours)
+            out.print(f"{name}: {path}", markup=False)
+            for claim, row in study.read_json(path)["claims"].items():
+                interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
+                most = f", follows {row['parameter']} most" if row["parameter"] else ""
+                out.print(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}){most}", markup=False)
     return OK
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import jinja2
 import pandas as pd
 
-from dexrepro import __version__, chapters
+from dexrepro import __version__, chapters, study
 from dexrepro.config import compose_chapter, provenance, resolved_block
 from dexrepro.experiment import (
     AFTER_CORRECTION,
@@ -200,7 +200,7 @@ class _Report:
             "totals": totals,
             "gallery": [figure for c in book for figure in _in_book_order(c)],
             "errata": errata,
-            "studies": [],
+            "studies": [{"claim": claim, **row} for item in study.stored() for claim, row in item["claims"].items()],
         }
 
     def _provenance(self, book: list[dict[str, Any]]) -> str:
