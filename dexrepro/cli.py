@@ -78,6 +78,9 @@ def _parser() -> argparse.ArgumentParser:
     study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
     study.set_defaults(function=study_command)
 
+    render = commands.add_parser("render", parents=[selection], help="animate recorded runs (case=NAME format=gif|mp4)")
+    render.set_defaults(function=render_command)
+
     diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
     diff.add_argument("a", type=Path)
     diff.add_argument("b", type=Path)
@@ -359,6 +362,29 @@ def report_command(options: argparse.Namespace) -> int:
 
     _, results, _ = _selected(options)
     out.print(str(page.build(results)), markup=False)
+    return OK
+
+
+def render_command(options: argparse.Namespace) -> int:
+    """``dexrepro render (FOLDER | chapter=N [only=EXPERIMENT]) [case=NAME] [format=gif|mp4]``."""
+    from dexrepro import chapters
+    from dexrepro.config import InputError
+    from dexrepro.report import animation
+
+    folders = [Path(text) for text in options.selection if "=" not in text]
+    options.selection = [text for text in options.selection if "=" in text]
+    numbers, results, only = _selected(options, ("case", "format"))
+    values = dict(text.partition("=")[::2] for text in options.selection)
+    kind = values.get("format", "gif")
+    if kind not in ("gif", "mp4"):
+        raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
+    for number in () if folders else numbers:
+        for experiment in chapters.load(number).experiments:
+            folder = results / f"chapter{number}" / experiment.name
+            if experiment.name in only or (not only and experiment.has("scene") and folder.exists()):
+                folders.append(folder)
+    for folder in folders:
+        out.print(str(animation.render(folder, values.get("case"), kind)), markup=False)
     return OK
 
 
