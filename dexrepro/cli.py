@@ -81,6 +81,11 @@ def _parser() -> argparse.ArgumentParser:
     render = commands.add_parser("render", parents=[selection], help="animate recorded runs (case=NAME format=gif|mp4)")
     render.set_defaults(function=render_command)
 
+    new = commands.add_parser("new", help="write a working control law of your own, with its test")
+    new.add_argument("what", choices=["controller"])
+    new.add_argument("name", help="class name, for example MyLaw")
+    new.set_defaults(function=new_command)
+
     diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
     diff.add_argument("a", type=Path)
     diff.add_argument("b", type=Path)
@@ -362,6 +367,15 @@ def report_command(options: argparse.Namespace) -> int:
 
     _, results, _ = _selected(options)
     out.print(str(page.build(results)), markup=False)
+    return OK
+
+
+def new_command(options: argparse.Namespace) -> int:
+    """``dexrepro new controller NAME``."""
+    from dexrepro.scaffold import new_controller
+
+    law, test, command = new_controller(options.name, Path())
+    out.print(f"wrote {law} and {test}; try:\n  pytest {test}\n  {command}", markup=False)
     return OK
 
 
