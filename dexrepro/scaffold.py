@@ -6,7 +6,7 @@ from pathlib import Path
 
 from dexrepro.config import InputError
 
-_LAW = '''"""A holding law of your own: from the position along the holding line and the contact force to a reference."""
+_LAW = '''"""A holding law of your own: from position and contact force along the holding line to a reference."""
 
 
 class {name}:
