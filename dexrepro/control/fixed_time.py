@@ -1,4 +1,4 @@
-"""Fixed-time backstepping: joint errors vanish within a time that does not depend on how large they were (Sect. 3.3)."""
+"""Fixed-time backstepping: errors vanish within a time that does not depend on how large they were (Sect. 3.3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""External joint torque from the generalised momentum, without accelerations or an inverse of the inertia (Sect. 3.2.4)."""
+"""External joint torque from the generalised momentum, without measured accelerations (Sect. 3.2.4)."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 
 def consistent_inverse(mass: Array, jacobian: Array, damping: float = 1e-6) -> tuple[Array, Array]:
-    """Inertia-weighted inverse Jbar = M^-1 J^T (J M^-1 J^T + damping)^-1, (n, m), and projector U = I - J^T Jbar^T, (n, n).
+    """Inertia-weighted inverse Jbar = M^-1 J^T (J M^-1 J^T + damping)^-1, (n, m), and U = I - J^T Jbar^T, (n, n).
 
     U maps any joint torque to one that gives the task no acceleration (up to the damping): J M^-1 U = 0.
     mass: (n, n), positive definite [kg m^2]; jacobian: (m, n).

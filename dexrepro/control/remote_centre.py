@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ def cross(a: Any, b: Any) -> Array:
 def closest_point(centre: Array, corners: Sequence[Array]) -> tuple[int, Array]:
     """Segment, counted from 0, and its point (3,) [m] that is nearest to the centre, over a line through corners."""
     best, found = math.inf, (0, corners[0])
-    for index, (start, end) in enumerate(zip(corners[:-1], corners[1:])):
+    for index, (start, end) in enumerate(pairwise(corners)):
         along = end - start
         share = float((centre - start) @ along) / float(along @ along)
         point = start + min(max(share, 0.0), 1.0) * along
@@ -53,7 +54,7 @@ def printed_centre_force(centre: Array, tip: Array, wrist: Array, stiffness: flo
 
 
 def tilt(desired: Array, actual: Array) -> Array:
-    """omega q_U, (3,) [rad]: the rotation vector from the desired tool axis to the actual one, (3,) unit vectors each."""
+    """omega q_U, (3,) [rad]: the rotation vector from the desired tool axis to the actual one, unit vectors (3,)."""
     axis = cross(desired, actual)
     sine, cosine = math.sqrt(float(axis @ axis)), float(desired @ actual)
     if sine < 1e-12:

@@ -171,9 +171,9 @@ class Push:
 
 
 class Carried:
-    """A static body that somebody carries along a path: ``path``(time) -> position (x, y, z) [m]. Channels: x, y, z [m]."""
+    """A static body that is carried along a path: ``path``(time) -> position (x, y, z) [m]. Channels: x, y, z [m]."""
 
-    def __init__(self, body: str, path: Callable[[float], tuple[float, float, float]]) -> None:
+    def __init__(self, body: str, path: Callable[[float], Force]) -> None:
         self.name, self._path, self.position = body, path, (0.0, 0.0, 0.0)
 
     def bind(self, world: Ends) -> Callable[[float], None]:
@@ -182,7 +182,8 @@ class Carried:
             raise ValueError(f"'{self.name}' is not a static body, so it cannot be carried")
 
         def apply(time: float) -> None:
-            self.position = path(time)
+            x, y, z = path(time)
+            self.position = float(x), float(y), float(z)
             body.place(self.position)
 
         return apply

@@ -41,9 +41,12 @@ class GraspClassifier:
         patches: NDArray[np.float32],
         labels: NDArray[np.int64],
         epochs: int,
-        watch: Callable[[int], None] | None = None,
+        watch: Callable[[int, float], None] | None = None,
     ) -> None:
-        """Train on patches (n, 7, 24, 24) and labels (n,); ``watch(epoch)`` is called after every epoch."""
+        """Train on patches (n, 7, 24, 24) and labels (n,).
+
+        After every epoch ``watch`` gets its number and the share found right while it was trained on.
+        """
         torch = self._torch
         self.mean = patches.mean(axis=(0, 2, 3), keepdims=True)
         self.deviation = patches.std(axis=(0, 2, 3), keepdims=True) + 1e-6
@@ -51,12 +54,15 @@ class GraspClassifier:
         loss = torch.nn.CrossEntropyLoss()
         for epoch in range(epochs):
             self.network.train()
+            right = 0
             for part in torch.randperm(len(inputs), generator=self._order).split(self._batch):
                 self._optimiser.zero_grad()
-                loss(self.network(inputs[part]), targets[part]).backward()
+                scores = self.network(inputs[part])
+                loss(scores, targets[part]).backward()
                 self._optimiser.step()
+                right += int((scores.detach().argmax(1) == targets[part]).sum())
             if watch is not None:
-                watch(epoch + 1)
+                watch(epoch + 1, right / len(inputs))
 
     def probabilities(self, patches: NDArray[np.float32]) -> NDArray[np.float64]:
         """Probability of each class, shape (n, 3)."""

@@ -32,13 +32,15 @@ class Pixels:
 
 def rectangles(path: Path) -> list[Array]:
     """Rectangles (4, 2) of corners (column, row) in a cpos or cneg file; those with undefined corners are left out."""
-    corners = np.array([[float(word) for word in line.split()[:2]] for line in path.read_text().splitlines() if line.strip()])
+    corners = np.array(
+        [[float(word) for word in line.split()[:2]] for line in path.read_text().splitlines() if line.strip()]
+    )
     groups = corners[: len(corners) // 4 * 4].reshape(-1, 4, 2)
     return [group for group in groups if np.isfinite(group).all()]
 
 
 def grasp_of(corners: Array, heights: Array) -> Grasp:
-    """Grasp in pixels: the edge from corner 1 to 2 lies along the finger plates, that from 2 to 3 across the opening."""
+    """Grasp in pixels: the edge from corner 1 to 2 lies along the finger plates, that from 2 to 3 over the opening."""
     (x, y), opening = corners.mean(axis=0), corners[2] - corners[1]
     row, column = min(max(round(float(y)), 0), ROWS - 1), min(max(round(float(x)), 0), COLUMNS - 1)
     angle = float(np.arctan2(opening[1], opening[0]))

@@ -19,7 +19,8 @@ CHANNELS = ("red", "green", "blue", "depth", "normal x", "normal y", "normal z")
 class Lens(Protocol):
     """Where points of the world appear in a picture."""
 
-    position: tuple[float, float, float]
+    @property
+    def position(self) -> tuple[float, float, float]: ...
 
     def project(self, points: Array) -> Array: ...
 
@@ -79,12 +80,10 @@ def cut(picture: Picture, grasps: Sequence[Grasp], size: float, bounded: bool = 
         return np.zeros((0, 7, SAMPLES, SAMPLES), dtype=np.float32)
     steps = (np.arange(SAMPLES) + 0.5) / SAMPLES * size - size / 2
     along, across = np.meshgrid(steps, -steps)
-    angle = np.array([g.angle for g in grasps])[:, None, None]
-    points = np.empty((len(grasps), SAMPLES, SAMPLES, 3))
-    for k, (key, first, second) in enumerate((("x", np.cos, lambda a: -np.sin(a)), ("y", np.sin, np.cos))):
-        points[..., k] = np.array([getattr(g, key) for g in grasps])[:, None, None]
-        points[..., k] += first(angle) * along + second(angle) * across
-    points[..., 2] = np.array([g.z for g in grasps])[:, None, None]
+    x, y, z, angle = np.array([(g.x, g.y, g.z, g.angle) for g in grasps]).T[..., None, None]
+    c, s = np.cos(angle), np.sin(angle)
+    levels = z + np.zeros_like(along)
+    points = np.stack((x + c * along - s * across, y + s * along + c * across, levels), axis=-1)
     pixels = picture.lens.project(points)
     where = (pixels[..., 1], pixels[..., 0])
     layers = [map_coordinates(picture.colours[..., c], where, order=1, mode="nearest") for c in range(3)]

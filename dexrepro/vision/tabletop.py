@@ -114,14 +114,25 @@ def furnish(world: World, box: Box, items: list[Item], rng: np.random.Generator,
     wall = shade()
     for side in (-1, 1):
         shapes.append(
-            Shape("box", (plate, depth + 2 * plate, box.height), Pose((side * (width + plate) / 2, 0, box.height / 2)), wall)
+            Shape(
+                "box",
+                (plate, depth + 2 * plate, box.height),
+                Pose((side * (width + plate) / 2, 0, box.height / 2)),
+                wall,
+            )
         )
-        shapes.append(Shape("box", (width, plate, box.height), Pose((0, side * (depth + plate) / 2, box.height / 2)), wall))
+        shapes.append(
+            Shape("box", (width, plate, box.height), Pose((0, side * (depth + plate) / 2, box.height / 2)), wall)
+        )
     world.add_body("box", shapes, (mx, my, box.floor))
     names = []
     for index, item in enumerate(items):
         a, b, c = item.size
-        shape = Shape("cylinder", (a / 2, c), colour=item.colour) if item.round else Shape("box", (a, b, c), colour=item.colour)
+        shape = (
+            Shape("cylinder", (a / 2, c), colour=item.colour)
+            if item.round
+            else Shape("box", (a, b, c), colour=item.colour)
+        )
         world.add_body(
             f"item{index}", [shape], (item.x, item.y, box.floor + c / 2), (0.0, 0.0, item.yaw), mass=mass, friction=0.8
         )

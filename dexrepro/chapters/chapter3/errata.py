@@ -18,7 +18,8 @@ ERRORS = (
         "E3.12",
         "(3.25)",
         "error",
-        "x_2d contains + e_2 while e_2 = x_2 - x_2d: the right side is then x_2, and (3.34) is derived without the term. "
+        "x_2d contains + e_2 while e_2 = x_2 - x_2d: the right side is then x_2, and (3.34) is derived without "
+        "the term. "
         "Solved for e_2 it halves the second error; evaluated one sample late it diverges.",
         "Drop + e_2.",
         switch="fixed_opening.law.printed=true",
@@ -28,7 +29,8 @@ ERRORS = (
         "E3.16",
         "(3.31), bracket",
         "error",
-        "The scale multiplies the whole difference, so R lies along P_R to P_EA: not across the link and not the shortest "
+        "The scale multiplies the whole difference, so R lies along P_R to P_EA: not across the link and not "
+        "the shortest "
         "distance that Fig. 3.3 and the text describe.",
         "R = P_R P_E - P_EA P_E cos(theta_R) |P_R P_E| / |P_EA P_E|, the foot point's offset; pointing to P_R.",
         switch="fixed_opening.null_space.force=printed",
@@ -58,7 +60,8 @@ READINGS = (
         "E3.09",
         "omega, q_U before (3.21)",
         "reading",
-        "q_D x q is the axis that turns the desired direction into the actual one, the text wants the reverse; with Theta "
+        "q_D x q is the axis that turns the desired direction into the actual one, the text wants the reverse; "
+        "with Theta "
         "as tool-to-base the printed axis doubles the angle. With Theta = base-to-tool and q_U in tool coordinates the "
         "printed order is right. The arctan of a quotient of vectors is read as atan2 of norm and dot product.",
         "Turn about -q_U (reading used: Theta maps tool to base coordinates).",
@@ -76,8 +79,10 @@ READINGS = (
         "E3.15b",
         "(3.30), J_R",
         "reading",
-        "The Jacobian of the last three joints is a design choice consistent with the text. It leaves out joints that move "
-        "the link near the opening; with the tool axis free it makes things worse, with the whole task it changes nothing.",
+        "The Jacobian of the last three joints is a design choice consistent with the text. It leaves out "
+        "joints that move "
+        "the link near the opening; with the tool axis free it makes things worse, with the whole task it "
+        "changes nothing.",
         "Jacobian of the body-fixed nearest point, all joints that move it.",
         switch="fixed_opening.null_space.jacobian=last3",
         evidence=tuple(f"{FIXED}.{case}.rcm_distance_final" for case in ("last3pos1", "exactpos1", "exactposfree1")),
@@ -86,7 +91,8 @@ READINGS = (
         "E3.16b",
         "(3.31), direction",
         "reading",
-        "With an arrow from its first to its second letter the bracket-corrected R points from P_R to the link and would "
+        "With an arrow from its first to its second letter the bracket-corrected R points from P_R to the link "
+        "and would "
         "push it away; the opposite convention makes it right.",
         "F_R = K_R (P_R - foot point).",
     ),
@@ -94,7 +100,8 @@ READINGS = (
         "E3.18",
         "3.5.2, positions",
         "reading",
-        "In experiments 1 and 2 the target is 0.27 m and 0.26 m beside the opening, more than half the box: the opening is "
+        "In experiments 1 and 2 the target is 0.27 m and 0.26 m beside the opening, more than half the box: "
+        "the opening is "
         "not in the middle of the lid, or the box was moved.",
         "The box is placed anew for each reach, hole and target inside.",
     ),
@@ -102,7 +109,8 @@ READINGS = (
         "E3.24",
         "(3.26)-(3.28) with (3.29)",
         "reading",
-        "The weights are driven by all of e_2, so with the tool axis free the network also works against the null-space "
+        "The weights are driven by all of e_2, so with the tool axis free the network also works against the "
+        "null-space "
         "torque; driven by the task part of e_2 it does not, and then lets the null space sag if gravity is not known.",
         "As printed for the whole task; the task part of e_2 where the tool axis is left free.",
         switch="fixed_opening.adaptation=task",
@@ -136,7 +144,8 @@ GAPS = (
         "E3.17",
         "3.5.2",
         "gap",
-        "The gripper's length is not printed, and decides how near the straight tool lets the wrist come to the opening.",
+        "The gripper's length is not printed, and decides how near the straight tool lets the wrist come to "
+        "the opening.",
         "0.15 m beyond the flange's end point; shorter ones are in the sensitivity table.",
         switch="fixed_opening.gripper=0",
         evidence=tuple(f"{FIXED}.{c}.rcm_distance_max" for c in ("flange3", "short3", "reach3")),
@@ -172,10 +181,16 @@ SLIPS = (
     _slip(
         "E3.01",
         "(3.1), (3.14)",
-        "The external torque has a minus sign in (3.1) and a plus sign later; no effect but the sign of the reported force.",
+        "The external torque has a minus sign in (3.1) and a plus sign later; no effect but the sign of the "
+        "reported force.",
         "One convention; plus, 'applied on the manipulator', here.",
     ),
-    _slip("E3.02", "(3.2)", "W is n x k but W^T S is used; m is not the task dimension in z.", "W is k x n, z has 4n = 28."),
+    _slip(
+        "E3.02",
+        "(3.2)",
+        "W is n x k but W^T S is used; m is not the task dimension in z.",
+        "W is k x n, z has 4n = 28.",
+    ),
     _slip(
         "E3.03", "(3.4), (3.7)", "The distance lacks z and has two names.", "d_node = |z - zeta_min|, as the text says."
     ),
@@ -194,9 +209,13 @@ SLIPS = (
         "Entries (1,2) and (2,3) are not those of the skew matrix that the other four belong to.",
         "(1,2) = -rho_z and (2,3) = -rho_x.",
     ),
-    _slip("E3.14", "(3.29)", "m joints in n dimensions, Jbar n x n, U m x n.", "Jbar 7 x m, U 7 x 7; S is the inertia."),
+    _slip(
+        "E3.14", "(3.29)", "m joints in n dimensions, Jbar n x n, U m x n.", "Jbar 7 x m, U 7 x 7; S is the inertia."
+    ),
     _slip("E3.15", "(3.30)", "Three zeros and three torques for seven joints.", "Four zeros."),
-    _slip("E3.19", "(3.35)", "K_12 e_2, M without a dot, lost e and S.", "K_21 e_2, (1/2) e_2^T dM e_2, e_2^T e_W^T S."),
+    _slip(
+        "E3.19", "(3.35)", "K_12 e_2, M without a dot, lost e and S.", "K_21 e_2, (1/2) e_2^T dM e_2, e_2^T e_W^T S."
+    ),
     _slip("E3.20", "(3.36)", "Transposes are lost.", "tr(e_W^T Gamma^-1 dW), e_2^T e_W^T S."),
     _slip("E3.22", "(3.40), lines 2, 3", "e_1 under K_22 and K_23.", "e_2, as line 4."),
 )

@@ -27,7 +27,8 @@ FIGURES = {
         "The observer's response is that of a first-order lag with the time constant 1/K.",
     ),
     "3.11": Figure(
-        "External joint torque, true (dashed) and observed, of the three joints it loads most, and Dis_R, during a push "
+        "External joint torque, true (dashed) and observed, of the three joints it loads most, and Dis_R, "
+        "during a push "
         "of 30 N along +y on the middle of the forearm in reach 1. Simulated; box and lid do not touch the arm here.",
         "The observed torque follows the true one with a small lag and the offset of the model's error.",
     ),
@@ -44,6 +45,7 @@ FIGURES = {
 }
 TABLES = {"T3.B": "Push: laws, models and directions", "T3.C": "Observer gain: lag and relative error"}
 RATE = 100.0
+SWEPT = {"lag": "lag", "noisy": "noisy_error", "clean": "clean_error"}
 JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 
 
@@ -104,7 +106,7 @@ def _sweep(recording: Recording, config: Config, rng: np.random.Generator) -> pd
 
 
 def _lag(time: Array, truth: Array, seen: Array, config: Config) -> float | None:
-    """Delay [s] at which the observed torque of the most loaded joint reaches half of its plateau after the true one."""
+    """Delay [s] with which the observed torque of the most loaded joint reaches half of its plateau."""
     plateau = (time >= config.push.start + 0.5) & (time <= config.push.start + config.push.duration - 0.2)
     joint = int(np.abs(truth[plateau]).mean(axis=0).argmax())
     half = 0.5 * truth[plateau][:, joint].mean()
@@ -145,9 +147,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
     )
     if "sweep" in recording.frames:
         table = recording.frames["sweep"]
-        for row in table.itertuples():
-            metrics.update({f"lag_{row.gain:g}": row.lag, f"noisy_{row.gain:g}": row.noisy_error})
-            metrics[f"clean_{row.gain:g}"] = row.clean_error
+        for gain, row in zip(config.sweep.gains, table.to_dict("records")):
+            metrics.update({f"{name}_{gain:g}": row[key] for name, key in SWEPT.items()})
     return metrics
 
 
@@ -176,7 +177,7 @@ def _draw_steps() -> Any:
     step, unit = 1e-3, np.eye(1)
     for gain, line in zip((5, 20, 50, 200), ("extra1", "rival", "book", "extra2")):
         observer, velocity, seen = MomentumObserver(gain=gain, dt=step), 0.0, []
-        for k in range(400):
+        for _ in range(400):
             seen.append(float(observer(unit, np.array([velocity]), np.zeros(1), np.zeros(1))[0]))
             velocity += step  # unit mass under a unit external torque
         time = step * np.arange(400)
@@ -208,7 +209,9 @@ def _draw_torques(recordings: Any, metrics: Any, config: Config) -> Any:
         style.phase(axes, push.start, push.start + push.duration, "push" if axes is bottom else "")
     errors = [100 * metrics[case]["observer_error"] for case in ("plus", "exact_plus") if case in metrics]
     found = f"; with an exact model {errors[1]:.0f} %" if len(errors) > 1 else ""
-    style.title(figure, f"The observed torque is wrong by {errors[0]:.0f} %, most of it the weight it believes in{found}")
+    style.title(
+        figure, f"The observed torque is wrong by {errors[0]:.0f} %, most of it the weight it believes in{found}"
+    )
     return figure
 
 
@@ -247,11 +250,15 @@ def _draw_sweep(table: pd.DataFrame) -> Any:
     from dexrepro.report import style
 
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.4)
-    axes.plot(table.gain, 100 * table.clean_error, marker="o", markersize=3, label="exact momentum", **style.LINES["book"])
-    axes.plot(table.gain, 100 * table.noisy_error, marker="s", markersize=3, label="noisy momentum", **style.LINES["rival"])
+    axes.plot(
+        table.gain, 100 * table.clean_error, marker="o", markersize=3, label="exact momentum", **style.LINES["book"]
+    )
+    axes.plot(
+        table.gain, 100 * table.noisy_error, marker="s", markersize=3, label="noisy momentum", **style.LINES["rival"]
+    )
     axes.set(xscale="log", yscale="log", xlabel="$K_{Ex}$ [1/s]", ylabel="Error of $\\sigma$ [%]")
     axes.legend()
-    best = table.gain[table.noisy_error.idxmin()]
+    best = table.gain.iloc[int(table.noisy_error.argmin())]
     style.title(figure, f"With noise the best gain is near {best:g}/s")
     return figure
 

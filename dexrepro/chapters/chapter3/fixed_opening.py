@@ -10,7 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter3 import drawings, reach
 from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
-from dexrepro.chapters.chapter3.scene import ARM, CAMERA, Touching, build
+from dexrepro.chapters.chapter3.scene import CAMERA, Touching, build
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 
 _REACH = (
@@ -21,22 +21,26 @@ _REACH = (
 )
 FIGURES = {
     "3.2": Figure(
-        "Tool axis on the way to the opening in reach 1 (simulated): actual axis, desired axis, the angle omega between "
+        "Tool axis on the way to the opening in reach 1 (simulated): actual axis, desired axis, the angle "
+        "omega between "
         "them, remote centre and end point. The book shows a sketch.",
         "The tool axis turns towards the line from the opening to the target.",
     ),
     "3.3": Figure(
-        "Elbow, wrist, end point, remote centre and the shortest distance Dis_R, half-way to the target in reach 1 with "
+        "Elbow, wrist, end point, remote centre and the shortest distance Dis_R, half-way to the target in "
+        "reach 1 with "
         "the position-only task (simulated). The book shows a sketch.",
         "The shortest distance runs from the opening's centre to the foot point on the arm.",
     ),
     "3.4": Figure(
-        "The simulated workspace: box of 0.5 m x 0.37 m x 0.3 m, lid with a square hole, cube at the target of reach 1. "
+        "The simulated workspace: box of 0.5 m x 0.37 m x 0.3 m, lid with a square hole, cube at the target of "
+        "reach 1. "
         "The book shows a photograph.",
         "A box with a hole in its lid in front of the robot's right arm.",
     ),
     "3.6": Figure(
-        "Four instants of reach 1 (simulated): start, end point at the remote centre, half-way, at the target. The book "
+        "Four instants of reach 1 (simulated): start, end point at the remote centre, half-way, at the target. "
+        "The book "
         "shows photographs of the same steps.",
         "The gripper descends to the opening and passes it to the cube inside the box.",
     ),
@@ -61,7 +65,12 @@ def simulate(config: Config, rng: Any) -> Recording:
         recording = reach.run(world, config, lambda _: centre, Touching(world))
         if config.pictures:
             approach, insertion, _ = config.phases
-            instants = {"start": 0.0, "centre": approach, "half": approach + insertion / 2, "target": sum(config.phases)}
+            instants = {
+                "start": 0.0,
+                "centre": approach,
+                "half": approach + insertion / 2,
+                "target": sum(config.phases),
+            }
             recording.images = {name: world.snapshot(recording, time, CAMERA) for name, time in instants.items()}
     add_distances(recording, config, centre)
     return recording
@@ -136,7 +145,9 @@ def _draw_reach(n: int, recordings: Any, metrics: Any, config: Config) -> Any:
     right.legend(loc="upper right", bbox_to_anchor=(1.0, 0.92))
     found = metrics[f"reach{n}"]
     final, far = 1e3 * found["final_position_error"], 1e3 * found["rcm_distance_max"]
-    style.title(figure, f"Reach {n}: {final:.2g} mm from the target, inside never more than {far:.2g} mm off the centre")
+    style.title(
+        figure, f"Reach {n}: {final:.2g} mm from the target, inside never more than {far:.2g} mm off the centre"
+    )
     return figure
 
 

@@ -16,7 +16,8 @@ REQUIRES = ("torch",)
 FIGURES = {
     "3.C": Figure(
         "Accuracy on training and on new scenes over 25 epochs, and confusion on the new scenes, for a patch of 0.16 m "
-        "that shows the walls. Synthetic RGB-D scenes rendered in place of Cornell's data (the book states 98 % training "
+        "that shows the walls. Synthetic RGB-D scenes rendered in place of Cornell's data (the book states 98 "
+        "% training "
         "accuracy and no test accuracy).",
         "Training accuracy approaches 100 %; new scenes are classified almost as well.",
     ),
@@ -35,9 +36,9 @@ def simulate(config: Config, rng: Any) -> Recording:
     classifier = GraspClassifier(config.network_seed, config.learning_rate, config.batch)
     rows = []
 
-    def watch(epoch: int) -> None:
-        found, new_found = (classifier.probabilities(p).argmax(1) for p in (patches, new_patches))
-        rows.append({"epoch": epoch, "train": (found == labels).mean(), "test": (new_found == new_labels).mean()})
+    def watch(epoch: int, train: float) -> None:
+        test = (classifier.probabilities(new_patches).argmax(1) == new_labels).mean()
+        rows.append({"epoch": epoch, "train": train, "test": test})
 
     # The perturbation is a share of the inputs' range, which is about 1 in every channel.
     classifier.fit(patches + np.float32(config.perturbation), labels, config.epochs, watch)
@@ -145,10 +146,10 @@ def _draw_example(recording: Recording) -> Any:
     axes.imshow(recording.images["scene"])
     grasps = recording.frames["grasps"]
     colours = (style.BOOK, style.RIVAL, style.PLAIN)
-    best = int(grasps.score.idxmax())
-    for index, row in grasps.iterrows():
+    best = int(grasps.score.argmax())
+    for index, row in enumerate(grasps.to_dict("records")):
         u, v = ([row[f"{axis}{k % 4}"] for k in range(5)] for axis in "uv")
-        found = int(row.found)
+        found = int(row["found"])
         axes.plot(u, v, color=colours[found], linewidth=2.2 if index == best else 0.7)
     boundary = recording.frames["boundary"]
     axes.plot(boundary.u, boundary.v, label="safety region", **style.LINES["reference"])

@@ -22,7 +22,8 @@ FIGURES = {
     "3.13": Figure(_SHOWN.format("0 s"), "The arm stands in the hole of the lid before it moves."),
     "3.14": Figure(_SHOWN.format("10 s"), "The arm stands in the hole of the lid after it has moved."),
     "3.15": Figure(
-        "Path of the moving remote centre, ours: the book draws its path without numbers. Seen from above and over time.",
+        "Path of the moving remote centre, ours: the book draws its path without numbers. Seen from above and "
+        "over time.",
         "The centre of the opening runs through a figure of eight of 10 cm by 6 cm in 10 s.",
     ),
     "3.16": Figure(
@@ -59,7 +60,7 @@ def simulate(config: Config, rng: Any) -> Recording:
         if config.pictures:
             for name, time in (("begin", 0.0), ("quarter", 1.25), ("end", config.motion.period)):
                 now = config.motion.start + time
-                index = min(int(round(now / config.step)), len(recording.time) - 1)
+                index = min(round(now / config.step), len(recording.time) - 1)
                 pose = {"lid": [*centre(now), 0.0, 0.0, 0.0, 1.0]}
                 positions = {ARM: recording[f"{ARM}.position"][index]}
                 recording.images[name] = world.render(positions, pose, VIEW)

@@ -14,7 +14,6 @@ from dexrepro.control.null_space import consistent_inverse, damped_inverse
 from dexrepro.control.remote_centre import (
     centre_force,
     closest_point,
-    cross,
     printed_centre_force,
     rotation_matrix,
     tilt,
@@ -39,7 +38,8 @@ class Reference:
 
     def __init__(self, config: Config, tip: Array, axis: Array, centre: Array) -> None:
         self.start, self.centre, self.target = tip, centre, np.array(config.target, dtype=float)
-        self.approach, self.insertion, self._lever = *config.phases[:2], config.lever
+        self.approach, self.insertion, _ = config.phases
+        self._lever = config.lever
         self._straight = config.straight
         self._axis = axis
         self._turn = -tilt(tool_axis(centre, centre, self.target, self._lever), axis)
@@ -178,7 +178,7 @@ def quintic(time: float, duration: float) -> tuple[float, float]:
 
 
 def run(world: World, config: Config, centre: Callable[[float], Array], touching: Callable[[], Any]) -> Recording:
-    """Run a scene; adds ``tracking`` [m], ``observed`` torque [N m], ``contact`` and ``nodes`` to the World's channels."""
+    """Run a scene; adds ``tracking`` [m], ``observed`` [N m], ``contact`` and ``nodes`` to the World's channels."""
     plant = world.arm(ARM)
     reach = Reach(config, centre, lambda: plant.torque)
     probes = {

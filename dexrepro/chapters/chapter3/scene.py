@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dexrepro.experiment import Config
+from dexrepro.physics.elements import Carried
 from dexrepro.physics.world import Camera, World
 from dexrepro.robots.arm import Arm, Pose, Shape
 from dexrepro.robots.baxter import baxter, extension, posture, torso
@@ -69,11 +70,9 @@ def add_box(world: World, box: Config, opening: Any, centre: Callable[[float], A
         shapes.append(Shape("box", (width, plate, height), Pose((0, along, -height / 2)), WALL))
     # The upper face of walls and the middle plane of the lid are at the height of the opening.
     world.add_body("box", shapes, (mx, my, opening[2] - plate / 2))
-    lid = world.add_body("lid", lid_shapes(box, opening), tuple(map(float, opening)))
+    world.add_body("lid", lid_shapes(box, opening), tuple(map(float, opening)))
     if centre is not None:
-        from dexrepro.physics.elements import Carried
-
-        world.add(Carried("lid", lambda time: tuple(map(float, centre(time)))))
+        world.add(Carried("lid", centre))
 
 
 def lid_shapes(box: Config, opening: Any) -> list[Shape]:

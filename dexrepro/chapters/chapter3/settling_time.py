@@ -18,7 +18,8 @@ from dexrepro.robots.baxter import baxter, posture
 Array = NDArray[np.float64]
 FIGURES = {
     "3.A": Figure(
-        "Time until V' stays below that of an error of 1 mrad, worst of three directions, against the first joint error, "
+        "Time until V' stays below that of an error of 1 mrad, worst of three directions, against the first "
+        "joint error, "
         "for the printed gains and parts of them, with the bound T_max of Lemma 3.2 (printed and corrected constants). "
         "Error dynamics of Baxter's right arm under perfect compensation, torque unlimited (ours: the book states the "
         "bound and shows no settling times).",
@@ -49,8 +50,11 @@ def simulate(config: Config, rng: Any) -> Recording:
 
 
 class ErrorDynamics:
-    """de1/dt = e2 - k1(e1) e1, M de2/dt = -C e2 - e1 - k2(e2) e2 about the untucked arm: Eqs. (3.24)-(3.27) when what the
-    dynamics need is known exactly. k(e) is the secant slope of the three terms. Steps are linearly implicit."""
+    """The errors of Eqs. (3.24)-(3.27) about the untucked arm when what the dynamics need is known exactly.
+
+    de1/dt = e2 - k1(e1) e1, M de2/dt = -C e2 - e1 - k2(e2) e2; k(e) is the secant slope of the three terms. Steps are
+    linearly implicit.
+    """
 
     def __init__(self, config: Config) -> None:
         self.arm = baxter("right")
@@ -78,7 +82,7 @@ class ErrorDynamics:
         return float(config.duration), growth, torque
 
     def _coriolis(self, q: Array, dq: Array, e2: Array) -> Array:
-        """C(q, dq) e2 from the quadratic form c(v) = C(q, v) v, whose bilinear form is that of Christoffel's symbols."""
+        """C(q, dq) e2 (Christoffel's C) from the quadratic form c(v) = C(q, v) v."""
         gravity = self.model.gravity(q)
         both, one, other = (self.model.bias(q, v) - gravity for v in (dq + e2, dq, e2))
         return 0.5 * (both - one - other)
@@ -90,7 +94,7 @@ class ErrorDynamics:
 
 
 def _tuned(plant: ErrorDynamics, config: Config, directions: Array) -> tuple[list[float], list[float]]:
-    """K11 and K21 that settle soonest from 1 rad (two directions) with no larger torque than the printed gains need."""
+    """K11 and K21 that settle soonest from 1 rad (two directions) with no more torque than the printed gains need."""
     errors = directions[:2]
     allowed = config.allowed_torque
     limit = max(plant.settle(e, allowed.first, allowed.second)[2] for e in errors)
@@ -113,10 +117,10 @@ def measure(recording: Recording, config: Config) -> Metrics:
     metrics["k11"], metrics["k21"] = float(law.k11), float(law.k21)
     metrics["inertia_max"] = float(law.inertia_max)
     if min(config.first[1:] + config.second[1:]) > 0 and not config.tune:
-        constants = dict(inertia=metrics["inertia_max"], joints=7, share=config.gamma)
+        constants: Any = dict(inertia=metrics["inertia_max"], joints=7, share=config.gamma)
         gains = (config.first, config.second, config.powers)
-        metrics["bound"] = settling_bound(*gains, **constants)  # type: ignore[arg-type]
-        metrics["bound_printed"] = settling_bound(*gains, **constants, printed=True)  # type: ignore[arg-type]
+        metrics["bound"] = settling_bound(*gains, **constants)
+        metrics["bound_printed"] = settling_bound(*gains, **constants, printed=True)
     return metrics
 
 
@@ -135,12 +139,13 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     if "printed" not in recordings:
         return {}
     figure, axes = style.subplots(height=2.8)
+    found: Any = metrics["printed"]
     for case, (label, line) in CURVES.items():
         if case in recordings:
             worst = recordings[case].frames["settling"].groupby("error")["time"].max()
             axes.plot(worst.index, worst, marker="o", markersize=3, label=label, **style.LINES[line])
-    found = metrics["printed"]
-    for name, text, line in (("bound", "$T_{max}$, corrected", "reference"), ("bound_printed", "$T_{max}$, printed", "printed")):  # fmt: skip
+    bounds = (("bound", "$T_{max}$, corrected", "reference"), ("bound_printed", "$T_{max}$, printed", "printed"))
+    for name, text, line in bounds:
         axes.axhline(found[name], label=f"{text}: {found[name]:.1f} s", **style.LINES[line])
     axes.set(xscale="log", yscale="log", xlabel=r"First joint error $\|e_1(0)\|$ [rad]", ylabel="Settling time [s]")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
