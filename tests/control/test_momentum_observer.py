@@ -46,7 +46,8 @@ def test_nothing_is_observed_where_nothing_pushes():
 
 def test_a_push_on_the_moving_arm_is_observed():
     seen, expected = swing((0.0, 10.0, 0.0))
-    assert seen[-1] == pytest.approx(expected, abs=0.05 * np.abs(expected).max())
+    # The arm swings on during the observer's lag of 20 ms.
+    assert seen[-1] == pytest.approx(expected, abs=0.1 * np.abs(expected).max())
 
 
 def test_gains_beyond_two_over_the_period_are_unstable():
