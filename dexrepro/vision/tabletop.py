@@ -106,8 +106,8 @@ def _random_item(rng: np.random.Generator, x0: float, x1: float, y0: float, y1: 
     return Item(x, y, float(rng.uniform(-math.pi, math.pi)), (*sides, float(rng.uniform(0.03, 0.08))), disc, colour)
 
 
-def furnish(world: World, box: Box, items: list[Item], rng: np.random.Generator, mass: float = 0.0) -> list[str]:
-    """Put floor, walls and items into a world; returns the items' names. mass [kg] of each (0: fixed)."""
+def furnish(world: World, box: Box, items: list[Item], rng: np.random.Generator) -> None:
+    """Put floor, walls (in random shades) and items into a world."""
     shade = lambda: (*np.clip(rng.uniform(0.3, 0.8) + rng.uniform(-0.1, 0.1, 3), 0, 1).tolist(), 1.0)  # noqa: E731
     (mx, my), (width, depth), plate = box.middle, box.size, 0.01
     shapes = [Shape("box", (width, depth, plate), Pose((0, 0, -plate / 2)), shade())]
@@ -125,6 +125,11 @@ def furnish(world: World, box: Box, items: list[Item], rng: np.random.Generator,
             Shape("box", (width, plate, box.height), Pose((0, side * (depth + plate) / 2, box.height / 2)), wall)
         )
     world.add_body("box", shapes, (mx, my, box.floor))
+    place_items(world, box, items)
+
+
+def place_items(world: World, box: Box, items: list[Item], mass: float = 0.0) -> list[str]:
+    """Put items on a box's floor; returns their names. mass [kg] of each (0: fixed)."""
     names = []
     for index, item in enumerate(items):
         a, b, c = item.size
@@ -187,9 +192,12 @@ def candidates(rng: np.random.Generator, items: list[Item], box: Box, each: int 
     return result
 
 
-def training_set(config: Any, scenes: int, rng: np.random.Generator, size: float) -> tuple[Any, Any]:
-    """Patches (n, 7, 24, 24) and labels (n,) of so many random scenes."""
-    box = Box(tuple(config.box))
+def training_set(config: Any, interior: Any, scenes: int, rng: np.random.Generator, size: float) -> tuple[Any, Any]:
+    """Patches (n, 7, 24, 24) of a side [m] and labels (n,) of so many random scenes in a box (x, y) [m].
+
+    config: camera_height, safety_margin [m] and field_of_view [degrees].
+    """
+    box = Box(tuple(interior))
     camera = Overhead((0.0, 0.0, config.camera_height), size=(180, 140), field_of_view=config.field_of_view)
     patches, labels = [], []
     for _ in range(scenes):

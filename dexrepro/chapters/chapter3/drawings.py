@@ -33,6 +33,19 @@ def picture(image: Any, finding: str) -> Any:
     return figure
 
 
+def pictures(images: dict[str, Any], finding: str) -> Any:
+    """Rendered views side by side, each with its label."""
+    from dexrepro.report import style
+
+    figure, grid = style.subplots(1, len(images), height=2.9)
+    for axes, (label, image) in zip(grid, images.items()):
+        axes.imshow(image)
+        axes.set_axis_off()
+        axes.set_title(label)
+    style.title(figure, finding)
+    return figure
+
+
 def steps(recording: Recording, config: Config) -> Any:
     """The four instants of Fig. 3.6."""
     from dexrepro.report import style
@@ -88,15 +101,16 @@ def shortest_distance(recording: Recording, config: Config) -> Any:
     _mark(axes, {"elbow": corners[0], "$P_{EA}$": corners[1], "$P_E$": corners[2], "$P_R$": centre})
     axes.legend(loc="upper left")
     distance = 1e3 * float(np.linalg.norm(centre - foot))
-    style.title(figure, f"The arm passes {distance:.0f} mm beside the centre if the tool's axis is left free")
+    style.title(figure, f"With a free tool axis the arm passes {distance:.0f} mm beside the centre")
     return figure
 
 
 def _space(style: Any) -> tuple[Any, Any]:
-    figure, axes = style.subplots(width=style.ONE_COLUMN * 1.3, height=3.2, subplot_kw={"projection": "3d"})
+    figure, axes = style.subplots(width=style.TWO_COLUMNS * 0.7, height=3.6, subplot_kw={"projection": "3d"})
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
     axes.view_init(elev=18, azim=-60)
     axes.locator_params(nbins=4)
+    axes.set_box_aspect(None, zoom=0.72)
     return figure, axes
 
 

@@ -202,16 +202,15 @@ def _draw_torques(recordings: Any, metrics: Any, config: Config) -> Any:
             axes.plot(run.time, run["external"][:, joint], **style.LINES["reference"])
         axes.set_ylabel(r"$\tau_{Ex}$ [N m]")
         axes.set_title(f"model with {name}")
-    top.legend(loc="lower left", ncol=3)
+    top.legend(loc="upper right")
     bottom.plot(recording.time, 1e3 * recording["rcm_distance"], **style.LINES["book"])
-    bottom.set(xlabel="Time [s]", ylabel="$Dis_R$ [mm]", xlim=(push.start - 1, push.start + push.duration + 2.1))
+    shown = (push.start - 1, push.start + push.duration + 2.1)
+    bottom.set(xlabel="Time [s]", ylabel="$Dis_R$ [mm]", ylim=(0, 12), xlim=shown)
     for axes in (top, middle, bottom):
         style.phase(axes, push.start, push.start + push.duration, "push" if axes is bottom else "")
     errors = [100 * metrics[case]["observer_error"] for case in ("plus", "exact_plus") if case in metrics]
-    found = f"; with an exact model {errors[1]:.0f} %" if len(errors) > 1 else ""
-    style.title(
-        figure, f"The observed torque is wrong by {errors[0]:.0f} %, most of it the weight it believes in{found}"
-    )
+    found = f", with an exact model by {errors[1]:.0f} %" if len(errors) > 1 else ""
+    style.title(figure, f"The observed torque errs by {errors[0]:.0f} %, mostly unknown weight{found}")
     return figure
 
 
@@ -227,7 +226,7 @@ CURVES = {
 def _draw_effect(recordings: Any, metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, (left, right) = style.subplots(1, 2, height=2.5)
+    figure, (left, right) = style.subplots(1, 2, height=2.9)
     push = config.cases["plus"].push
     for case, (label, line) in CURVES.items():
         if case in recordings:
@@ -237,9 +236,9 @@ def _draw_effect(recordings: Any, metrics: Any, config: Config) -> Any:
     for axes in (left, right):
         style.phase(axes, push.start, push.start + push.duration, "push")
         axes.set(xlabel="Time [s]", xlim=(push.start - 1, push.start + push.duration + 2.1))
-    left.set(ylabel=r"$\|\tilde X\|$ [mm]", ylim=(0, 25))
-    right.set(ylabel="$Dis_R$ [mm]", ylim=(0, 60))
-    left.legend(loc="upper right", bbox_to_anchor=(1, 0.93))
+    left.set(ylabel=r"$\|\tilde X\|$ [mm]", ylim=(0, 18))
+    right.set(ylabel="$Dis_R$ [mm]", ylim=(0, 80))
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=3)
     found = metrics["plus"]
     peak, tip = 1e3 * found["rcm_peak"], 1e3 * found["error_peak"]
     style.title(figure, f"30 N move the arm {peak:.1f} mm off the centre and the end point by {tip:.1f} mm")

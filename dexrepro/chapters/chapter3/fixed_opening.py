@@ -109,7 +109,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
             figures[f"3.{6 + n}"] = _draw_reach(n, recordings, metrics, config)
     first = recordings.get("reach1")
     if first is not None and first.images:
-        figures["3.4"] = drawings.picture(first.images["start"], "The workspace: a box that is entered through its lid")
+        figures["3.4"] = drawings.picture(first.images["start"], "A box entered through its lid")
         figures["3.6"] = drawings.steps(first, config.cases["reach1"])
     if first is not None:
         figures["3.2"] = drawings.orientation(first, config.cases["reach1"])
@@ -138,16 +138,15 @@ def _draw_reach(n: int, recordings: Any, metrics: Any, config: Config) -> Any:
     approach, insertion, _ = config.cases[f"reach{n}"].phases
     for axes in (left, right):
         for time, word in ((approach, "at $P_R$"), (approach + insertion, "at $X_D$")):
-            style.event(axes, time, word)
+            axes.axvline(time, color="#444444", linewidth=0.6)
+            axes.annotate(word, (time, 0.02), xycoords=("data", "axes fraction"), rotation=90, fontsize=6.5, ha="right")
         axes.set_xlabel("Time [s]")
     left.set(yscale="log", ylabel=r"Distance to target $\|\tilde X\|$ [m]", ylim=(1e-6, 2))
     right.set(ylabel="Distance to centre $Dis_R$ [mm]", ylim=(0, 250))
-    right.legend(loc="upper right", bbox_to_anchor=(1.0, 0.92))
+    right.legend(loc="upper center", bbox_to_anchor=(0.45, 1.02), framealpha=1, frameon=True, edgecolor="none")
     found = metrics[f"reach{n}"]
-    final, far = 1e3 * found["final_position_error"], 1e3 * found["rcm_distance_max"]
-    style.title(
-        figure, f"Reach {n}: {final:.2g} mm from the target, inside never more than {far:.2g} mm off the centre"
-    )
+    final, far = 1e6 * found["final_position_error"], 1e3 * found["rcm_distance_max"]
+    style.title(figure, f"Reach {n} ends {final:.0f} µm from its target and stays within {far:.2f} mm of the centre")
     return figure
 
 

@@ -56,8 +56,8 @@ def _data(config: Config, rng: Any) -> tuple[Any, Any, Any, Any]:
     if config.dataset == "synthetic":
         from dexrepro.vision.tabletop import training_set
 
-        train = training_set(config, config.scenes, rng("train"), config.patch_size)
-        return (*train, *training_set(config, config.test_scenes, rng("test"), config.patch_size))
+        train = training_set(config, config.box, config.scenes, rng("train"), config.patch_size)
+        return (*train, *training_set(config, config.box, config.test_scenes, rng("test"), config.patch_size))
     from dexrepro.vision.cornell import labelled
 
     patches, labels = labelled(Path(config.dataset))
@@ -158,7 +158,7 @@ def _draw_example(recording: Recording) -> Any:
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=4)
     axes.set_axis_off()
     right = float((grasps.found == grasps.true).mean())
-    style.title(figure, f"The chosen grasp (bold) is safe; {100 * right:.0f} % of this scene found right")
+    style.title(figure, f"{100 * right:.0f} % of this scene's grasps are told right")
     return figure
 
 

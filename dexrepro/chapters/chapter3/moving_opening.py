@@ -20,7 +20,10 @@ Array = NDArray[np.float64]
 _SHOWN = "The simulated arm and the moving lid {} after its movement began. The book shows photographs."
 FIGURES = {
     "3.13": Figure(_SHOWN.format("0 s"), "The arm stands in the hole of the lid before it moves."),
-    "3.14": Figure(_SHOWN.format("10 s"), "The arm stands in the hole of the lid after it has moved."),
+    "3.14": Figure(
+        _SHOWN.format("1.25 s and 10 s") + " The path is closed, so that at 10 s the opening is back.",
+        "The arm stands in the hole of the lid while it is aside and after it has come back.",
+    ),
     "3.15": Figure(
         "Path of the moving remote centre, ours: the book draws its path without numbers. Seen from above and "
         "over time.",
@@ -98,10 +101,10 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     run = recordings.get("track")
     if run is None:
         return figures
-    for identifier, name, text in (("3.13", "begin", "0 s: the arm stands in the opening"),
-                                   ("3.14", "end", "10 s: it still does, the opening has moved")):  # fmt: skip
-        if name in run.images:
-            figures[identifier] = drawings.picture(run.images[name], text)
+    if run.images:
+        figures["3.13"] = drawings.picture(run.images["begin"], "0 s: the arm stands in the opening")
+        pair = {"1.25 s: the opening is aside": run.images["quarter"], "10 s: it has come back": run.images["end"]}
+        figures["3.14"] = drawings.pictures(pair, "The arm has followed the opening")
     figures["3.15"] = _draw_path(run, metrics["track"], config.cases["track"])
     figures["3.16"] = _draw_tracking(recordings, metrics, config)
     return figures
@@ -115,7 +118,7 @@ def _draw_path(run: Recording, found: Metrics, config: Config) -> Any:
     left.plot(x, y, **style.LINES["reference"])
     left.plot(x[0], y[0], marker="*", color=style.PRINTED, markersize=9, linestyle="none", label="start and end")
     left.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    left.legend(loc="upper right")
+    left.legend(loc="upper center", bbox_to_anchor=(0.5, 1.16))
     for values, name, line in ((x, "x", "book"), (y, "y", "rival"), (z, "z", "extra1")):
         (curve,) = right.plot(run.time, values, **style.LINES[line])
         style.label_end(right, curve, name)
@@ -129,7 +132,7 @@ def _draw_path(run: Recording, found: Metrics, config: Config) -> Any:
 CURVES = {
     "track": ("whole method", "book"),
     "free": ("without null-space torque", "extra2"),
-    "pos": ("position-only, $K_R$ 1000 N/m", "rival"),
+    "pos": ("position-only task", "rival"),
     "posfree": ("position-only, without torque", "plain"),
 }
 
@@ -137,7 +140,7 @@ CURVES = {
 def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, (left, right) = style.subplots(1, 2, height=2.5)
+    figure, (left, right) = style.subplots(1, 2, height=2.7)
     for case, (label, line) in CURVES.items():
         if case in recordings:
             run = recordings[case]
@@ -149,7 +152,7 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
         axes.set_xlabel("Time [s]")
     left.set(ylabel=r"$\|\tilde X\|$ [mm]", yscale="log", ylim=(1e-3, 2e3))
     right.set(ylabel="$Dis_R$ [mm]", ylim=(0, 180))
-    right.legend(loc="upper right", bbox_to_anchor=(1, 0.93))
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=4)
     found = metrics["track"]
     far, tip = 1e3 * found["moving_distance_max"], 1e3 * found["moving_error_max"]
     style.title(figure, f"The arm follows the opening within {far:.1f} mm while its end point errs by {tip:.1f} mm")

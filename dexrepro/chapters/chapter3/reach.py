@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from dexrepro.control.null_space import consistent_inverse, damped_inverse
 from dexrepro.control.remote_centre import (
     centre_force,
     closest_point,
+    cross,
     printed_centre_force,
     rotation_matrix,
     tilt,
@@ -26,6 +27,7 @@ from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import joint_frames
 
 Array = NDArray[np.float64]
+BEYOND = 1.6  # a retreat's length over that of the insertion
 CARRIERS = (5, 6)  # number of joints that move the segments e1-w1 and w1-tip (turning w2 leaves its axis in place)
 
 
@@ -33,12 +35,14 @@ class Reference:
     """Where the tool's end point and axis should be: start -> remote centre -> target -> hold (Sect. 3.5.2).
 
     Straight lines with the quintic law s = 10 u^3 - 15 u^4 + 6 u^5. On the way to the centre the axis turns from its
-    first direction to the one that it has inside, then it passes through the centre.
+    first direction to the one that it has inside, then it passes through the centre. A fourth phase, if there is one,
+    goes back through the centre and beyond it.
     """
 
     def __init__(self, config: Config, tip: Array, axis: Array, centre: Array) -> None:
         self.start, self.centre, self.target = tip, centre, np.array(config.target, dtype=float)
-        self.approach, self.insertion, _ = config.phases
+        self.approach, self.insertion, hold, *retreat = config.phases
+        self._leave, self._retreat = self.approach + self.insertion + hold, retreat[0] if retreat else 0.0
         self._lever = config.lever
         self._straight = config.straight
         self._axis = axis
@@ -56,6 +60,9 @@ class Reference:
             axis = rotation_matrix(share * self._turn) @ self._axis
             return self.start + share * way, rate * way, axis, rate * self._turn
         share, rate = quintic(time - self.approach, self.insertion)
+        if self._retreat and time > self._leave:
+            back, rate = quintic(time - self._leave, self._retreat)
+            share, rate = 1.0 - BEYOND * back, -BEYOND * rate
         way = self.target - self.centre
         position = self.centre + share * way
         return position, rate * way, tool_axis(position, centre, self.target, self._lever), np.zeros(3)
@@ -143,8 +150,22 @@ class Reach:
         else:
             sign, rows = 1.0, state.rotation.T[:2]
         error = np.concatenate((offset, sign * (rows @ turn)))
+        if self.config.task == "roll":
+            rows = np.vstack((rows, axis))
+            error = np.append(error, self._roll_error(state.rotation, axis))
         jacobian = np.concatenate((linear, rows @ state.axes.T))
         return error, jacobian, np.concatenate((velocity, rows @ spin))
+
+    def _roll_error(self, rotation: Array, axis: Array) -> float:
+        """Angle about the tool's axis from the direction in which the fingers should close to theirs [rad].
+
+        Fingers have no sides: the nearer of the two directions counts. It is bounded, so that the wrist turns slowly.
+        """
+        wanted = np.array((math.cos(self.config.roll), math.sin(self.config.roll), 0.0))
+        side = cross(axis, rotation[:, 0])
+        angle = math.atan2(float(wanted @ side), float(wanted @ rotation[:, 0]))
+        turn = -((angle + math.pi / 2) % math.pi - math.pi / 2)
+        return min(max(turn, -0.1), 0.1)
 
     def _joint_error(self, q: Array, wanted: tuple[Array, Array, Array, Array]) -> tuple[Array, Array]:
         """e1 = q - q_d and dq_d, with q_d from closed-loop inverse kinematics."""
@@ -177,7 +198,13 @@ def quintic(time: float, duration: float) -> tuple[float, float]:
     return u**3 * (10 - 15 * u + 6 * u * u), 30 * u * u * (1 - u) ** 2 / duration
 
 
-def run(world: World, config: Config, centre: Callable[[float], Array], touching: Callable[[], Any]) -> Recording:
+def run(
+    world: World,
+    config: Config,
+    centre: Callable[[float], Array],
+    touching: Callable[[], Any],
+    events: Sequence[tuple[float, Callable[[], Any]]] = (),
+) -> Recording:
     """Run a scene; adds ``tracking`` [m], ``observed`` [N m], ``contact`` and ``nodes`` to the World's channels."""
     plant = world.arm(ARM)
     reach = Reach(config, centre, lambda: plant.torque)
@@ -188,6 +215,6 @@ def run(world: World, config: Config, centre: Callable[[float], Array], touching
         "contact": touching,
     }
     try:
-        return world.run(sum(config.phases), {ARM: reach}, probes=probes, on_divergence="stop")
+        return world.run(sum(config.phases), {ARM: reach}, probes=probes, events=events, on_divergence="stop")
     finally:
         reach.model.close()
