@@ -18,9 +18,7 @@ class PlanarChain:
     lengths: [m]. masses: [kg]. base: position of the first joint (x, y) [m].
     """
 
-    def __init__(
-        self, lengths: Triple, masses: Triple, base: Point = (0.0, 0.0), functions: ModuleType = math
-    ) -> None:
+    def __init__(self, lengths: Triple, masses: Triple, base: Point = (0.0, 0.0), functions: ModuleType = math) -> None:
         self.lengths, self.base = tuple(lengths), base
         self._sin, self._cos = functions.sin, functions.cos
         self._moments = [
@@ -76,6 +74,30 @@ class PlanarChain:
         """Joint torques J^T F [N m] of a force (x, y) [N] at the tip."""
         (x1, x2, x3), (y1, y2, y3) = self.jacobian(q)
         return x1 * force[0] + y1 * force[1], x2 * force[0] + y2 * force[1], x3 * force[0] + y3 * force[1]
+
+    def centripetal(self, q: Triple, dq: Triple) -> Point:
+        """Acceleration (x, y) of the tip [m/s^2] at joint rates [rad/s] without joint accelerations."""
+        c1, c2, c3, s1, s2, s3 = self._projections(q)
+        w1 = dq[0]
+        w2 = w1 + dq[1]
+        w3 = w2 + dq[2]
+        w1, w2, w3 = w1 * w1, w2 * w2, w3 * w3
+        return -c1 * w1 - c2 * w2 - c3 * w3, -s1 * w1 - s2 * w2 - s3 * w3
+
+    def torque(self, q: Triple, dq: Triple, ddq: Triple) -> tuple[Any, Any, Any]:
+        """Joint torques [N m] of a motion, without gravity: the inverse of ``acceleration``."""
+        c = self._inertia
+        sin, cos = self._sin, self._cos
+        t13 = q[1] + q[2]
+        c12, c23, c13 = c[0][1] * cos(q[1]), c[1][2] * cos(q[2]), c[0][2] * cos(t13)
+        s12, s23, s13 = c[0][1] * sin(q[1]), c[1][2] * sin(q[2]), c[0][2] * sin(t13)
+        w1, a1 = dq[0], ddq[0]
+        w2, a2 = w1 + dq[1], a1 + ddq[1]
+        w3, a3 = w2 + dq[2], a2 + ddq[2]
+        w1, w2, w3 = w1 * w1, w2 * w2, w3 * w3
+        third = c13 * a1 + c23 * a2 + c[2][2] * a3 + s13 * w1 + s23 * w2
+        second = c12 * a1 + c[1][1] * a2 + c23 * a3 + s12 * w1 - s23 * w3 + third
+        return c[0][0] * a1 + c12 * a2 + c13 * a3 - s12 * w2 - s13 * w3 + second, second, third
 
     def gravity(self, q: Triple, acceleration: Any = 9.81) -> tuple[Any, Any, Any]:
         """Joint torques [N m] that hold the arm against gravity [m/s^2] along -y, where the plane is vertical."""
