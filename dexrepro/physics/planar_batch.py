@@ -47,9 +47,14 @@ class PlanarPairs:
         pressure = magnitude / length
         return (x, y), np.array((pressure * dx, pressure * dy)), magnitude
 
-    def step(self, torque: Array, force: Array) -> None:
-        """Advance by one semi-implicit step under joint torques (3, 2, runs) [N m] and the contact force on arm 1."""
-        both = np.stack((-force, force), axis=1)
+    def step(self, torque: Array, force: Array, compensated: Array | None = None) -> None:
+        """Advance by one semi-implicit step.
+
+        torque: joint torques (3, 2, runs) [N m]. force: the contact force (2, runs) on arm 1 [N]. compensated: part of
+        it that both arms cancel with a joint torque of their own.
+        """
+        rest = force if compensated is None else force - compensated
+        both = np.stack((-rest, rest), axis=1)
         total = torque + np.array(self.chain.tip_torque(self.position, both))
         self.velocity += self.dt * np.array(self.chain.acceleration(self.position, self.velocity, total))
         self.position += self.dt * self.velocity

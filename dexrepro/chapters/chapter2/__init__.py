@@ -1,9 +1,9 @@
 """Chapter 2: two arms hold and move a deformable object, one teleoperated, one on its own."""
 
-from dexrepro.chapters.chapter2 import claims, errata, holding_line, movement_estimation
+from dexrepro.chapters.chapter2 import claims, errata, holding_comparison, holding_line, movement_estimation
 from dexrepro.experiment import Experiment
 
 TITLE = "Single-leader dual-follower manipulation of a deformable object"
-EXPERIMENTS = (Experiment.of(holding_line), Experiment.of(movement_estimation))
+EXPERIMENTS = tuple(Experiment.of(module) for module in (holding_line, movement_estimation, holding_comparison))
 CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES
 ERRATA = errata.ERRATA

@@ -11,6 +11,7 @@ from dexrepro.control.joint_pd import JointPD
 from dexrepro.control.target_impedance import TargetImpedance
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.elements import Elastic, Ends
+from dexrepro.physics.plant import Controller
 from dexrepro.physics.world import World
 from dexrepro.robots.planar import planar
 from dexrepro.robots.planar_chain import PlanarChain
@@ -56,7 +57,7 @@ def run(world: World, config: Config, law: Any) -> Recording:
         force = contact.channels()["force"]
         return f"diverged at {time:.4g} s: the force is {force:.4g} N" if force >= limit else None
 
-    controllers = {"leader": Leader(config), "follower": follower}
+    controllers: dict[str, Controller] = {"leader": Leader(config), "follower": follower}
     return world.run(config.duration, controllers, probes=probes, stop=squeezed, on_divergence="stop")
 
 
