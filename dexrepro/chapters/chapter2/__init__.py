@@ -1,9 +1,20 @@
 """Chapter 2: two arms hold and move a deformable object, one teleoperated, one on its own."""
 
-from dexrepro.chapters.chapter2 import claims, errata, holding_comparison, holding_line, movement_estimation
+from dexrepro.chapters.chapter2 import (
+    claims,
+    errata,
+    gain_search,
+    holding_comparison,
+    holding_line,
+    holding_sensitivity,
+    movement_estimation,
+)
 from dexrepro.experiment import Experiment
 
 TITLE = "Single-leader dual-follower manipulation of a deformable object"
-EXPERIMENTS = tuple(Experiment.of(module) for module in (holding_line, movement_estimation, holding_comparison))
+EXPERIMENTS = tuple(
+    Experiment.of(module)
+    for module in (holding_line, movement_estimation, holding_comparison, gain_search, holding_sensitivity)
+)
 CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES
 ERRATA = errata.ERRATA

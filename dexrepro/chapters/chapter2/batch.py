@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -19,9 +20,40 @@ from dexrepro.physics.planar_batch import PlanarPairs
 from dexrepro.robots.planar_chain import PlanarChain
 
 Array = NDArray[np.float64]
+Rows = list[dict[str, Any]]
 
 # Runs whose law differs in structure (not in a number) are stepped in separate groups.
 STRUCTURE = ("law", "window", "velocity", "order", "implicit")
+
+
+def table_rows(setting: Mapping[str, Any], laws: Sequence[str] | None = None) -> Rows:
+    """The runs s1 ... s18 of Table 2.1 under a setting (columns as in the configuration's ``run``).
+
+    laws: only the runs of these controllers ("force", "passive_impedance", "no_impedance", "impedance").
+    """
+    rows, number = [], 0
+    groups = (
+        (("force", "passive_impedance", "no_impedance", "impedance"), 1, 1.0),
+        (("passive_impedance", "no_impedance", "impedance"), 2, 1.0),
+        (("no_impedance", "impedance"), 2, 7.0),
+    )
+    for controllers, trajectory, force in groups:
+        for controller, regulated in itertools.product(controllers, (False, True)):
+            number += 1
+            if laws is None or controller in laws:
+                row = {**setting, "trajectory": trajectory, "desired_force": force, "run": f"s{number}"}
+                rows.append(controlled_by(controller, row if regulated else row | {"regulation": 0.0}))
+    return rows
+
+
+def controlled_by(controller: str, row: Mapping[str, Any]) -> dict[str, Any]:
+    """A run's settings with one of the compared controllers; NoIm is Im without mass and damping."""
+    if controller == "impedance":
+        return {**row, "law": "estimated"}
+    if controller == "no_impedance":
+        return {**row, "law": "estimated", "mass": 0.0, "damping": 0.0}
+    law = row.get("law_of_force", controller) if controller == "force" else controller
+    return {**row, "law": law, "window": None, "velocity": "", "order": 0, "implicit": False}
 
 
 def simulate_runs(
@@ -35,7 +67,7 @@ def simulate_runs(
     Returns, row by row, the mean square ``square_k`` and the mean ``mean_k`` of ||F|| - f_d [N] in the k-th part, and
     ``lost``, the share of time without contact. A run that diverged has NaN.
     """
-    order = runs.sort_values(list(STRUCTURE), kind="stable", na_position="last")
+    order = runs.astype({"window": float}).sort_values(list(STRUCTURE), kind="stable", na_position="last")
     with np.errstate(all="ignore"):
         result = _loop(order, config, np.asarray(edges), noise)
     result.index = order.index

@@ -71,6 +71,12 @@ def _replay(recording: Recording, config: Config) -> float:
     return float(np.abs(np.array(replayed) - recording["reference"][:, 0]).max())
 
 
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """How the offset of the estimate scales from the desired force of the runs to one a tenth of it."""
+    light, full = (metrics.get(case, {}).get("estimation_error") for case in ("light30", "sigma30"))
+    return {"offset_ratio": light / full} if light and full else {}
+
+
 def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
     figures = {}
     if stiffnesses := [case for case in recordings if case.startswith("k")]:
