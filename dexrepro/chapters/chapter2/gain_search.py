@@ -35,7 +35,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     runs = pd.DataFrame(rows)
     errors = simulate_runs(runs, config, edges=[0.0, config.settled, config.duration])
     runs["rmse"] = np.sqrt(errors["square_1"])
-    kept = [name for name in runs if name.startswith("gain_")]
+    kept = [str(name) for name in runs if str(name).startswith("gain_")]
     found = runs.groupby(["controller", "candidate"], sort=False)
     summary = found[kept].first().join(found["rmse"].agg(lambda values: np.sqrt(np.mean(np.square(values)))))
     steps = len(runs) * round(config.duration / config.step)
@@ -45,7 +45,7 @@ def simulate(config: Config, rng: Any) -> Recording:
 def measure(recording: Recording, config: Config) -> Metrics:
     candidates, result = recording.frames["candidates"], Metrics()
     for law, rows in candidates.groupby("controller"):
-        best = rows.loc[rows["rmse"].idxmin()]
+        best = rows.iloc[int(np.argmin(rows["rmse"].fillna(np.inf)))]
         result[f"{law}_default"] = _number(rows.loc[rows["candidate"] == 0, "rmse"].iloc[0])
         result[f"{law}_best"] = _number(best["rmse"])
         result |= {f"{law}_{name}": _number(best[f"gain_{name}"]) for name in config.ranges[law]}

@@ -64,7 +64,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
 def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
-    rows = []
+    rows: list[dict[str, Any]] = []
     for case, recording in recordings.items():
         margins = _margins(recording.frames["errors"], case)
         changes = {name: str(values) for name, values in config.cases[case].variants[case].items()}
