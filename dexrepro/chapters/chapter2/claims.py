@@ -180,8 +180,8 @@ TABLE = (
         _ordered_pairs(*_LEAD),
         printed=_ordered_pairs(("printed_7", "printed_5"), ("printed_8", "printed_6")),
         where="2.4.1.3",
-        note="With the velocity estimate as printed (E2.03) the lead carries almost nothing. Under joint PD the 10 ms of "
-        "lead help because they are close to the arm's lag; s15 and s17 have lost the object and decide nothing.",
+        note="With the velocity estimate as printed (E2.03) the lead carries almost nothing. Under joint PD the 10 ms "
+        "of lead help because they are close to the arm's lag; s15 and s17 have lost the object and decide nothing.",
     ),
     Claim(
         "C2.30",
