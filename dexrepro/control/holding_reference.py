@@ -66,6 +66,26 @@ class ImpedanceReference(NonImpedanceReference):
         return super()._target() + lead
 
 
+class FadeIn:
+    """Fades any holding law in from where the arm stands, as the estimated references are.
+
+    smoothing_rate, smoothing_power: mu, eta. dt: control period [s].
+    """
+
+    def __init__(self, *, law: Any, smoothing_rate: float, smoothing_power: float, dt: float) -> None:
+        self.law, self.dt = law, dt
+        self.smoothing_rate, self.smoothing_power = smoothing_rate, smoothing_power
+
+    def reset(self, position: Any) -> None:
+        self.law.reset(position)
+        self._start, self._sample = position, 0
+
+    def __call__(self, position: Any, force: Any) -> Any:
+        fade = -math.expm1(-self.smoothing_rate * (self._sample * self.dt) ** self.smoothing_power)
+        self._sample += 1
+        return self._start + fade * (self.law(position, force) - self._start)
+
+
 class KnownMovement:
     """Stands in for an estimation where the partner's movement and the object are known (Fig. 2.5).
 

@@ -1,6 +1,7 @@
 """Chapter 2: two arms hold and move a deformable object, one teleoperated, one on its own."""
 
 from dexrepro.chapters.chapter2 import (
+    balloon_static,
     claims,
     errata,
     gain_search,
@@ -14,7 +15,14 @@ from dexrepro.experiment import Experiment
 TITLE = "Single-leader dual-follower manipulation of a deformable object"
 EXPERIMENTS = tuple(
     Experiment.of(module)
-    for module in (holding_line, movement_estimation, holding_comparison, gain_search, holding_sensitivity)
+    for module in (
+        holding_line,
+        movement_estimation,
+        holding_comparison,
+        balloon_static,
+        gain_search,
+        holding_sensitivity,
+    )
 )
 CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES
 ERRATA = errata.ERRATA
