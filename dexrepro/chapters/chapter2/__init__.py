@@ -1,6 +1,8 @@
 """Chapter 2: two arms hold and move a deformable object, one teleoperated, one on its own."""
 
 from dexrepro.chapters.chapter2 import (
+    balloon_gain_search,
+    balloon_movement,
     balloon_static,
     claims,
     errata,
@@ -20,7 +22,9 @@ EXPERIMENTS = tuple(
         movement_estimation,
         holding_comparison,
         balloon_static,
+        balloon_movement,
         gain_search,
+        balloon_gain_search,
         holding_sensitivity,
     )
 )

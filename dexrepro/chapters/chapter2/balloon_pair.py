@@ -27,6 +27,7 @@ FACING = {
     "right": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
     "left": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [-1.0, 0.0, 0.0]]),
 }
+RECORD_EVERY = 5  # steps
 ROLES = {"leader": "right", "follower": "left"}
 
 
@@ -74,6 +75,7 @@ def run(config: Config, rng: Any, path: Callable[[float], Array]) -> Recording:
             {"leader": leader, "follower": follower},
             probes={"reference": lambda: follower.reference},
             stop=stop,
+            record_every=RECORD_EVERY,
             on_divergence="stop",
         )
     recording.series["time"] -= follower.contact_time if math.isfinite(follower.contact_time) else 0.0
@@ -81,28 +83,37 @@ def run(config: Config, rng: Any, path: Callable[[float], Array]) -> Recording:
 
 
 class GripperServo:
-    """Closed-loop inverse kinematics and computed torque: keeps the gripper's orientation and takes it to a place."""
+    """Keeps the gripper's orientation and takes it to a place: inverse kinematics before computed torque.
+
+    Joint references are solved every 4 ms and torques every 2 ms, far faster than the joints' 30 rad/s.
+    """
 
     def __init__(self, config: Config, arm: Arm, rotation: Array) -> None:
         servo = config.servo
-        self._model, self._rotation = RigidBodyModel(arm), rotation
+        self._model, self._rotation, self._step = RigidBodyModel(arm), rotation, config.step
         self._inverse = InverseKinematics(
-            arm, "pose", servo.ik_gain, config.step, servo.ik_damping, rest_gain=servo.rest_gain, kinematics=self._model
-        )
+            arm, "pose", servo.ik_gain, 4 * config.step, servo.ik_damping, rest_gain=servo.rest_gain,
+            kinematics=self._model,
+        )  # fmt: skip
         self._law = ComputedTorque(model=self._model, frequency=servo.frequency)
-        self._started = False
+        self._sample = 0
+        self._torque: Array = np.zeros(arm.dof)
 
     def __call__(self, sense: Any, target: Array) -> Array:
         """Torque (7,) [N m] towards a place (3,) [m], the measured contact force compensated."""
-        q = sense.position
-        if not self._started:
-            self._started = True
-            self._inverse.reset(q)
-            self._inverse.rest = q.copy()
-        reference = self._inverse(target, self._rotation)
-        torque = self._law(reference, q, sense.velocity, self._inverse.velocity)
-        contact: Array = sense.force @ self._model.jacobian(q)[:3]
-        return torque - contact
+        inverse, q = self._inverse, sense.position
+        if self._sample == 0:
+            inverse.reset(q)
+            inverse.rest = q.copy()
+        if self._sample % 4 == 0:
+            self._reference = inverse.position
+            inverse(target, self._rotation)
+        if self._sample % 2 == 0:
+            ahead = self._reference + (self._sample % 4 + 1) * self._step * inverse.velocity
+            contact = sense.force @ self._model.jacobian(q)[:3]
+            self._torque = self._law(ahead, q, sense.velocity, inverse.velocity) - contact
+        self._sample += 1
+        return self._torque
 
 
 class Leader:

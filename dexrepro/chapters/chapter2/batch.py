@@ -82,7 +82,7 @@ def _loop(runs: pd.DataFrame, config: Any, edges: Array, noise: np.random.Genera
     kp = np.array(config.arm.stiffness)[:, None, None] * p["kp_scale"]
     kd = np.array(config.arm.damping)[:, None, None] * p["kd_scale"]
     gravity, lead = np.where(p["gravity"], 9.81, 0.0), kd * p["velocity_reference"] / dt
-    laws, regulation = _laws(runs, dt), HoldingLineRegulation(gain=p["regulation"])
+    laws, regulation = grouped_laws(runs, dt), HoldingLineRegulation(gain=p["regulation"])
     home_x, home_y = plant.contact()[0]
     for part, law in laws:
         law.reset(home_x[1, part])
@@ -134,7 +134,7 @@ def _plant(p: Mapping[str, Any], config: Any) -> PlanarPairs:
     )
 
 
-def _laws(runs: pd.DataFrame, dt: float) -> list[tuple[slice, Any]]:
+def grouped_laws(runs: pd.DataFrame, dt: float) -> list[tuple[slice, Any]]:
     """The law of every group of structurally equal, adjacent runs."""
     laws, start = [], 0
     for _, rows in runs.groupby(list(STRUCTURE), sort=False, dropna=False):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,22 @@ RATES = ("rate_1", "rate_2", "rate_3", "rate_4")
 
 def simulate(config: Config, rng: Any) -> Recording:
     """Run every candidate on both trajectories, with the regulation; candidate 0 is the default setting."""
-    random, rows = rng("candidates"), []
+    rows = [
+        controlled_by(law, {**config.run, **setting, "trajectory": trajectory}) | labels
+        for law, setting, labels in candidates(config, rng("candidates"))
+        for trajectory in (1, 2)
+    ]
+    runs = pd.DataFrame(rows)
+    errors = simulate_runs(runs, config, edges=[0.0, config.settled, config.duration])
+    runs["rmse"] = np.sqrt(errors["square_1"])
+    steps = len(runs) * round(config.duration / config.step)
+    return Recording(frames={"candidates": summary(runs, config)}, steps=steps)
+
+
+def candidates(
+    config: Config, random: np.random.Generator
+) -> Iterator[tuple[str, dict[str, float], dict[str, float | str]]]:
+    """(law, changed settings, labels) of all candidates: log-uniform in the configured ranges, as many for each law."""
     for law, ranges in config.ranges.items():
         for candidate in range(config.candidates + 1):
             gains: dict[str, float] = {}
@@ -26,25 +41,22 @@ def simulate(config: Config, rng: Any) -> Recording:
                 drawn = float(low * (high / low) ** random.random())
                 gains[name] = drawn if candidate else config.run.get(name, 1.0)
             setting = {name: value for name, value in gains.items() if name != "rates"}
-            factor = gains.get("rates", 1.0)
-            scaled = {name: factor * config.run[name] for name in RATES}
-            for trajectory in (1, 2):
-                row = {**config.run, **scaled, **setting, "trajectory": trajectory}
-                labels = {"controller": law, "candidate": candidate, **{f"gain_{k}": v for k, v in gains.items()}}
-                rows.append(controlled_by(law, row) | labels)
-    runs = pd.DataFrame(rows)
-    errors = simulate_runs(runs, config, edges=[0.0, config.settled, config.duration])
-    runs["rmse"] = np.sqrt(errors["square_1"])
-    kept = [str(name) for name in runs if str(name).startswith("gain_")]
+            setting |= {name: gains.get("rates", 1.0) * config.run[name] for name in RATES}
+            labels: dict[str, float | str] = {"controller": law, "candidate": candidate}
+            yield law, setting, labels | {f"gain_{name}": value for name, value in gains.items()}
+
+
+def summary(runs: pd.DataFrame, config: Config) -> pd.DataFrame:
+    """One row a candidate: its gains and the root mean square of its runs' errors [N]."""
+    gains = [str(name) for name in runs if str(name).startswith("gain_")]
     found = runs.groupby(["controller", "candidate"], sort=False)
-    summary = found[kept].first().join(found["rmse"].agg(lambda values: np.sqrt(np.mean(np.square(values)))))
-    steps = len(runs) * round(config.duration / config.step)
-    return Recording(frames={"candidates": summary.reset_index()}, steps=steps)
+    errors = found["rmse"].agg(lambda values: float(np.sqrt(np.mean(np.square(np.asarray(values))))))
+    return found[gains].first().join(errors).reset_index()
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
-    candidates, result = recording.frames["candidates"], Metrics()
-    for law, rows in candidates.groupby("controller"):
+    result = Metrics()
+    for law, rows in recording.frames["candidates"].groupby("controller"):
         best = rows.iloc[int(np.argmin(rows["rmse"].fillna(np.inf)))]
         result[f"{law}_default"] = _number(rows.loc[rows["candidate"] == 0, "rmse"].iloc[0])
         result[f"{law}_best"] = _number(best["rmse"])
@@ -55,7 +67,11 @@ def measure(recording: Recording, config: Config) -> Metrics:
 def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
-    found = metrics["all"]
+    return {"T2.G": table(metrics["all"], config)}
+
+
+def table(found: Metrics, config: Config) -> pd.DataFrame:
+    """What the search found, one row a law."""
     rows = [
         {
             "law": law,
@@ -66,7 +82,7 @@ def tabulate(
         }
         for law, ranges in config.ranges.items()
     ]
-    return {"T2.G": pd.DataFrame(rows)}
+    return pd.DataFrame(rows)
 
 
 def _number(value: Any) -> float | None:

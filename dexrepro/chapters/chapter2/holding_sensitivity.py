@@ -22,9 +22,9 @@ ESTIMATING = ("no_impedance", "impedance")
 
 
 def simulate(config: Config, rng: Any) -> Recording:
-    """All variants of a group in one batch; runs that a variant cannot change are those of the default."""
+    """All variants in one batch; runs that a variant cannot change are those of the default."""
     rows: list[dict[str, Any]] = []
-    for name, changes in {"default": {}, **config.variants[config.group]}.items():
+    for name, changes in {"default": {}, **config.variants}.items():
         setting = {**config.run, **changes}
         rows += [row | {"variant": name} for row in table_rows(setting, _touched(changes))]
     runs = pd.DataFrame(rows)
@@ -52,7 +52,7 @@ PLANT = (
 
 def measure(recording: Recording, config: Config) -> Metrics:
     """For each variant, how many verdicts differ from the default's."""
-    margins = _margins(recording.frames["errors"], config.group)
+    margins = _margins(recording.frames["errors"])
     default = margins["default"]
     return {
         f"{name}_flips": sum(_flipped(default[claim], margin) for claim, margin in found.items())
@@ -65,14 +65,13 @@ def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
     rows: list[dict[str, Any]] = []
-    for case, recording in recordings.items():
-        margins = _margins(recording.frames["errors"], case)
-        changes = {name: str(values) for name, values in config.cases[case].variants[case].items()}
-        for name, found in margins.items():
-            flipped = [claim for claim, margin in found.items() if _flipped(margins["default"][claim], margin)]
-            if flipped or (name == "default" and not rows):
-                text = changes.get(name, "").strip("{}").replace("'", "") or name.replace("_", " ")
-                rows.append({"variant": name, "change": text, "flips": ", ".join(flipped), **found})
+    margins = _margins(recordings["all"].frames["errors"])
+    for name, found in margins.items():
+        flipped = [claim for claim, margin in found.items() if _flipped(margins["default"][claim], margin)]
+        if flipped or name == "default":
+            change = str(dict(config.variants.get(name, {}))).strip("{}").replace("'", "")
+            labels = {"variant": name.replace("_", " "), "change": change, "flips": ", ".join(flipped)}
+            rows.append(labels | found)
     return {"T2.S": pd.DataFrame(rows)}
 
 
@@ -80,15 +79,14 @@ def _flipped(default: float | None, margin: float | None) -> bool:
     return default is not None and margin is not None and (margin > 0) != (default > 0)
 
 
-def _margins(errors: pd.DataFrame, group: str) -> dict[str, dict[str, float | None]]:
-    """Margins of the judged claims by variant; with the first group, the default also over other parts of the run."""
+def _margins(errors: pd.DataFrame) -> dict[str, dict[str, float | None]]:
+    """Margins of the judged claims by variant; the default also over other parts of the run."""
     table = errors.set_index(["variant", "run"]).fillna(DIVERGED)
     variants = {str(name): pd.DataFrame(table.loc[name]) for name in dict.fromkeys(errors["variant"])}
     base = variants["default"]
     variants = {name: values.combine_first(base) for name, values in variants.items()}
     result = {name: _judge(values, 20) for name, values in variants.items()}
-    starts = STARTS[:-1] if group == "estimation" else ()
-    return result | {f"window_{start}_to_40": _judge(base, start) for start in starts}
+    return result | {f"window_{start}_to_40": _judge(base, start) for start in STARTS[:-1]}
 
 
 def _judge(values: pd.DataFrame, start: int) -> dict[str, float | None]:

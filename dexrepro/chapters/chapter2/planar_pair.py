@@ -32,12 +32,12 @@ def scene(config: Config) -> World:
 
 
 def simulate(config: Config) -> Recording:
-    """Run the pair with the law of the configuration; see ``run``."""
+    """Run the pair with the law of the configuration, every sample recorded; see ``run``."""
     with scene(config) as world:
-        return run(world, config, config.law)
+        return run(world, config, config.law, record_every=1)
 
 
-def run(world: World, config: Config, law: Any) -> Recording:
+def run(world: World, config: Config, law: Any, record_every: int = 5) -> Recording:
     """Run the pair; besides the World's channels, records the follower's ``reference`` and its ``estimate`` if any.
 
     law: makes x_1,r from the follower's own position and force, see ``dexrepro.control.holding_reference``.
@@ -58,7 +58,9 @@ def run(world: World, config: Config, law: Any) -> Recording:
         return f"diverged at {time:.4g} s: the force is {force:.4g} N" if force >= limit else None
 
     controllers: dict[str, Controller] = {"leader": Leader(config), "follower": follower}
-    return world.run(config.duration, controllers, probes=probes, stop=squeezed, on_divergence="stop")
+    return world.run(
+        config.duration, controllers, probes=probes, stop=squeezed, record_every=record_every, on_divergence="stop"
+    )
 
 
 def path(config: Config) -> Callable[[float], tuple[float, float]]:
