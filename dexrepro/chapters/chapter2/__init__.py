@@ -6,11 +6,13 @@ from dexrepro.chapters.chapter2 import (
     balloon_static,
     claims,
     errata,
+    estimation_stability,
     gain_search,
     holding_comparison,
     holding_line,
     holding_sensitivity,
     movement_estimation,
+    planar_platform,
 )
 from dexrepro.experiment import Experiment
 
@@ -18,8 +20,10 @@ TITLE = "Single-leader dual-follower manipulation of a deformable object"
 EXPERIMENTS = tuple(
     Experiment.of(module)
     for module in (
+        planar_platform,
         holding_line,
         movement_estimation,
+        estimation_stability,
         holding_comparison,
         balloon_static,
         balloon_movement,

@@ -37,7 +37,7 @@ def simulate(config: Config, rng: Any) -> Recording:
 
 
 def _force_rmse(runs: pd.DataFrame, config: Config, noise: np.random.Generator) -> Array:
-    """Root mean square [N] after ``settled`` of each run: the gripper follows its reference as the servo's joints do."""
+    """Root mean square [N] after ``settled`` of each run: the gripper follows like the servo's joints."""
     dt, k, w, desired = config.step, config.stiffness, config.servo.frequency, config.desired_force
     laws = [(part, _faded(law, config)) for part, law in grouped_laws(runs, dt)]
     for _, law in laws:

@@ -21,8 +21,8 @@ FIGURES = {
     ),
     "2.11": Figure(
         "Simulated Baxter, synthetic operator, balloon as a spring of 150 N/m. (a), (b) Paths of both grippers under "
-        "the proposed law; (c) holding force under the three laws of the book's figure and passive impedance with tuned "
-        "gains; (d) force errors on the line (12 to 20 s) and on the circle (from 20 s).",
+        "the proposed law; (c) holding force under the three laws of the book's figure, and passive impedance with "
+        "tuned gains; (d) force errors on the line (12 to 20 s) and on the circle (from 20 s).",
         "The proposed law holds 10 N within a third of a newton; force control and passive impedance err by newtons.",
     ),
 }

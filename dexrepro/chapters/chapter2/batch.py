@@ -98,7 +98,7 @@ def _loop(runs: pd.DataFrame, config: Any, edges: Array, noise: np.random.Genera
         squares[part_index] += error * error
         sums[part_index] += error
         lost += magnitude <= 0
-        measured = force if noise is None else force + p["noise"] * noise.standard_normal(force.shape)
+        measured = force if noise is None else force + p["noise"] * noise.standard_normal((2, 1))
         for part, law in laws:
             reference[part] = law(x[1, part], measured[0, part])
         np.clip(reference, *config.follower.workspace, out=reference)

@@ -54,6 +54,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "early_residual": rms(residual[early]),
         "convergence_time": last_outside(time, residual, 1e-3),
         "velocity_slope": _slope(true_velocity[late], velocity[late]),
+        "held": recording.simulated,
+        "smallest_stiffness": float(stiffness.min()),
         "replay_difference": _replay(recording, config),
     }
 
