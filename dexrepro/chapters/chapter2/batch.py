@@ -20,6 +20,7 @@ from dexrepro.physics.planar_batch import PlanarPairs
 from dexrepro.robots.planar_chain import PlanarChain
 
 Array = NDArray[np.float64]
+SPIN = 200.0  # rad/s, a joint faster than this has lost control whatever the force
 Rows = list[dict[str, Any]]
 
 # Runs whose law differs in structure (not in a number) are stepped in separate groups.
@@ -91,7 +92,7 @@ def _loop(runs: pd.DataFrame, config: Any, edges: Array, noise: np.random.Genera
     first, swing_rate = p["trajectory"] == 1, 2 * math.pi / config.period
     parts = np.searchsorted(np.round(edges[1:] / dt), np.arange(round(edges[-1] / dt)), "right")
     squares, sums = np.zeros((len(edges) - 1, len(runs))), np.zeros((len(edges) - 1, len(runs)))
-    lost, reference = np.zeros(len(runs)), np.zeros(len(runs))
+    lost, reference, spun = np.zeros(len(runs)), np.zeros(len(runs)), np.zeros(len(runs), dtype=bool)
     for i, part_index in enumerate(parts):
         (x, _), force, magnitude = plant.contact()
         error = magnitude - p["desired_force"]
@@ -113,6 +114,9 @@ def _loop(runs: pd.DataFrame, config: Any, edges: Array, noise: np.random.Genera
         if gravity.any():
             torque -= np.array(chain.gravity(plant.position, gravity))
         plant.step(torque, force, measured * p["compensation"])
+        if i % 20 == 0:
+            spun |= ~(np.abs(plant.velocity).max(axis=(0, 1)) < SPIN)
+    squares[:, spun] = np.nan
     counts = np.bincount(parts, minlength=len(edges) - 1)[:, None]
     columns = {f"square_{k}": row for k, row in enumerate(squares / counts)}
     columns |= {f"mean_{k}": row for k, row in enumerate(sums / counts)}

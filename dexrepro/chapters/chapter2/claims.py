@@ -270,7 +270,7 @@ BAXTER = (
         "The proposed law tracks the force better than force control and passive impedance.",
         every(*(less(f"{MOVING}.proposed.rmse_circle", f"{MOVING}.{law}.rmse_circle") for law in ("force", "passive"))),
         where="2.4.2.2",
-        note="Depends on the balloon for passive impedance, which rings against 150 N/m and not against 80 N/m (C2.34); "
+        note="Depends on the balloon for passive impedance, which rings against 150 N/m, not against 80 N/m (C2.34); "
         "NoIm does as well as Im, so the estimator earns the result.",
     ),
     Claim(

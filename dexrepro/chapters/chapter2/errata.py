@@ -12,10 +12,10 @@ ERRATA = (
         "E2.01",
         "(2.4), (2.5), (2.8)",
         "reading",
-        "If D keeps its direction, f_y = -k_o (y_1 - y_2): a partner that rises pulls the follower up, and (2.8) with its "
-        "minus sign drives them apart; the text to Fig. 2.3b says that the force points down.",
-        "D has constant length and the direction of X_1 - X_2 (a spring that turns freely). Then (2.3), text, figure and "
-        "(2.8) agree; x_c of (2.7) depends slightly on X_1 off the holding line.",
+        "If D keeps its direction, f_y = -k_o (y_1 - y_2): a partner that rises pulls the follower up, and (2.8) with "
+        "its minus sign drives them apart; the text to Fig. 2.3b says that the force points down.",
+        "D has constant length and the direction of X_1 - X_2 (a spring that turns freely). Then (2.3), text, figure "
+        "and (2.8) agree; x_c of (2.7) depends slightly on X_1 off the holding line.",
         switch="holding_line.object_model=constant_vector",
         evidence=tuple(
             f"{LINE}.{case}.{metric}"
@@ -60,8 +60,8 @@ ERRATA = (
         "E2.04",
         "after (2.22)",
         "gap",
-        "That the force error vanishes does not follow from dV <= 0 alone: it needs a bounded regressor and constant k_o "
-        "a_i, and a sine is no quadratic.",
+        "That the force error vanishes does not follow from dV <= 0 alone: it needs a bounded regressor and constant "
+        "k_o a_i, and a sine is no quadratic.",
         "The error stays in a bounded neighbourhood of 0.",
         evidence=tuple(f"{ESTIMATION}.sigma{s}.rmse" for s in (10, 30, 40)),
     ),
