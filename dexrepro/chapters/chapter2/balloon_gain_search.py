@@ -12,7 +12,7 @@ from dexrepro.chapters.chapter2 import gain_search
 from dexrepro.chapters.chapter2.balloon_movement import path
 from dexrepro.chapters.chapter2.batch import controlled_by, grouped_laws
 from dexrepro.chapters.chapter2.measures import Array
-from dexrepro.control.force_control import ForceControl
+from dexrepro.control.force_control import ForceControl, IntegralForceControl
 from dexrepro.control.holding_reference import FadeIn
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.sensor import smoothing
@@ -23,10 +23,11 @@ measure = gain_search.measure
 
 
 def simulate(config: Config, rng: Any) -> Recording:
-    """Run every candidate along the holding line; candidate 0 is the default setting."""
+    """Run every candidate along the holding line, against two balloons; candidate 0 is the default setting."""
     rows = [
-        controlled_by(law, {**config.run, **setting}) | labels
+        controlled_by(law, {**config.run, **setting, "object_stiffness": stiffness}) | labels
         for law, setting, labels in gain_search.candidates(config, rng("candidates"))
+        for stiffness in config.stiffness
     ]
     runs = pd.DataFrame(rows).astype({"window": float})
     runs = runs.sort_values("law", kind="stable").reset_index(drop=True)
@@ -38,7 +39,8 @@ def simulate(config: Config, rng: Any) -> Recording:
 
 def _force_rmse(runs: pd.DataFrame, config: Config, noise: np.random.Generator) -> Array:
     """Root mean square [N] after ``settled`` of each run: the gripper follows like the servo's joints."""
-    dt, k, w, desired = config.step, config.stiffness, config.servo.frequency, config.desired_force
+    dt, w, desired = config.step, config.servo.frequency, config.desired_force
+    k = runs["object_stiffness"].to_numpy()
     laws = [(part, _faded(law, config)) for part, law in grouped_laws(runs, dt)]
     for _, law in laws:
         law.reset(np.zeros(1))
@@ -60,7 +62,7 @@ def _force_rmse(runs: pd.DataFrame, config: Config, noise: np.random.Generator) 
 
 
 def _faded(law: Any, config: Config) -> Any:
-    if not isinstance(law, ForceControl):
+    if not isinstance(law, ForceControl | IntegralForceControl):
         return law
     run = config.run
     return FadeIn(law=law, smoothing_rate=run.smoothing_rate, smoothing_power=run.smoothing_power, dt=config.step)

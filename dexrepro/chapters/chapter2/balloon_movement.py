@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter2 import balloon_pair
-from dexrepro.chapters.chapter2.measures import Array, force_error, rms
+from dexrepro.chapters.chapter2.measures import Array, force_error, rms, shown
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 
 FIGURES = {
@@ -21,9 +21,9 @@ FIGURES = {
     ),
     "2.11": Figure(
         "Simulated Baxter, synthetic operator, balloon as a spring of 150 N/m. (a), (b) Paths of both grippers under "
-        "the proposed law; (c) holding force under the three laws of the book's figure, and passive impedance with "
-        "tuned gains; (d) force errors on the line (12 to 20 s) and on the circle (from 20 s).",
-        "The proposed law holds 10 N within a third of a newton; force control and passive impedance err by newtons.",
+        "the proposed law; (c) holding force under the three laws of the book's figure; (d) force errors "
+        "on the line (12 to 20 s) and on the circle (from 20 s), with the printed and with tuned gains (F: integral).",
+        "With printed gains the proposed law holds 10 N within a third of a newton, the other two err by newtons.",
     ),
 }
 TABLES = {"T2.2": "Force errors of the Baxter experiment: printed and tuned gains, two balloons"}
@@ -116,12 +116,9 @@ def tabulate(
     return {"T2.2": pd.DataFrame(rows)}
 
 
-LINES = {
-    "proposed": ("proposed", "book"),
-    "force": ("F", "plain"),
-    "passive": ("PIm", "rival"),
-    "tuned_passive": ("PIm, tuned", "extra1"),
-}
+SHOWN = {"force": ("F", "plain"), "passive": ("PIm", "rival"), "proposed": ("proposed", "book")}
+BARS = {**SHOWN, "tuned_force": ("F, tuned", "plain"), "tuned_passive": ("PIm, tuned", "rival")}
+BARS |= {"tuned_proposed": ("proposed,\ntuned", "book")}
 
 
 def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
@@ -151,7 +148,7 @@ def _draw_path(recording: Recording) -> Any:
 def _draw_result(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, grid = style.subplots(2, 2, height=4.8, width_ratios=(1, 1.4))
+    figure, grid = style.subplots(2, 2, height=4.8, width_ratios=(1, 1.6))
     run, shape = recordings["proposed"], config.path
     held = run.between(0)
     for axes, first, letter in ((grid[0, 0], 1, "a"), (grid[1, 0], 0, "b")):
@@ -162,27 +159,27 @@ def _draw_result(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
         style.panel(axes, letter, f"paths in the {'xyz'[first]}z plane")
     grid[0, 0].legend()
     forces, bars = grid[0, 1], grid[1, 1]
-    shown = [case for case in LINES if case in recordings]
-    for case in shown:
-        time, (label, line) = recordings[case].time, LINES[case]
-        forces.plot(time[time >= 0], recordings[case]["object.force"][time >= 0], label=label, **style.LINES[line])
+    for case, (label, line) in SHOWN.items():
+        time, look = recordings[case].time, style.LINES[line]
+        dense = {"linestyle": "-", "linewidth": 0.7} if case == "passive" else {}
+        forces.plot(time[time >= 0], recordings[case]["object.force"][time >= 0], label=label, **{**look, **dense})
     forces.axhline(config.desired_force, **style.LINES["reference"])
     style.phase(forces, shape.line_start, shape.line_end, "line")
     style.phase(forces, shape.circle_start, run.time[-1], "circle", "#F3F3F3")
     forces.set(xlabel="Time since contact [s]", ylabel="Holding force $\\|F\\|$ [N]", ylim=(0, 24))
-    forces.legend(ncols=2, loc="upper right", bbox_to_anchor=(1, 0.94))
-    style.panel(forces, "c")
-    place = np.arange(len(shown))
+    forces.legend(ncols=3, loc="upper right", bbox_to_anchor=(1, 0.94))
+    style.panel(forces, "c", "printed gains")
+    cases = [case for case in BARS if case in recordings]
+    place = np.arange(len(cases))
     for shift, phase, shade in ((-0.2, "line", 0.5), (0.2, "circle", 1.0)):
-        colours = [style.LINES[LINES[case][1]]["color"] for case in shown]
-        values = [metrics[case][f"rmse_{phase}"] for case in shown]
+        colours = [style.LINES[BARS[case][1]]["color"] for case in cases]
+        values = [shown(metrics[case][f"rmse_{phase}"]) for case in cases]
         found = bars.bar(place + shift, values, 0.38, color=colours, alpha=shade, label=phase)
         bars.bar_label(found, fmt="%.2f", fontsize=6.5)
-    bars.set_xticks(place, [LINES[case][0] for case in shown])
+    bars.set_xticks(place, [BARS[case][0] for case in cases], fontsize=6.5)
     bars.set(ylabel="Force RMSE [N]", yscale="log", ylim=(0.05, 20))
-    bars.text(0.02, 0.95, "left: line, right: circle", transform=bars.transAxes, fontsize=7, va="top")
-    style.panel(bars, "d")
-    best = metrics["proposed"]["rmse_circle"] or math.nan
+    style.panel(bars, "d", "line (pale) and circle")
+    best = shown(metrics["proposed"]["rmse_circle"])
     style.title(
         figure,
         f"The proposed law holds 10 N within {best:.2f} N rms on the circle (simulated Baxter, synthetic operator)",

@@ -38,7 +38,7 @@ def simulate(config: Config, rng: Any) -> Recording:
         contact = recording["follower.tip"][np.searchsorted(recording.time, 0.0) - 1]
         middle, colour = (contact + recording["leader.tip"][0]) / 2, (0.95, 0.55, 0.15, 1.0)
         world.add_sphere("balloon", config.rest_length / 2 - 0.02, middle, colour=colour, collides=False)
-        camera = Camera(target=(0.5, 0.1, 0.2), distance=1.7, yaw=125.0, pitch=-20.0)
+        camera = Camera(target=(0.35, 0.05, 0.22), distance=1.35, yaw=125.0, pitch=-18.0)
         recording.images["contact"] = world.snapshot(recording, 0.0, camera, (900, 700))
     return recording
 

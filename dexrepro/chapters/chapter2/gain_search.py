@@ -17,11 +17,11 @@ RATES = ("rate_1", "rate_2", "rate_3", "rate_4")
 
 
 def simulate(config: Config, rng: Any) -> Recording:
-    """Run every candidate on both trajectories, with the regulation; candidate 0 is the default setting."""
+    """Run every candidate on both trajectories, each with its object; candidate 0 is the default setting."""
     rows = [
-        controlled_by(law, {**config.run, **setting, "trajectory": trajectory}) | labels
+        controlled_by(law, {**config.run, **setting, "trajectory": trajectory, "object_stiffness": stiffness}) | labels
         for law, setting, labels in candidates(config, rng("candidates"))
-        for trajectory in (1, 2)
+        for trajectory, stiffness in zip((1, 2), config.stiffness)
     ]
     runs = pd.DataFrame(rows)
     errors = simulate_runs(runs, config, edges=[0.0, config.settled, config.duration])

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter2 import planar_pair
-from dexrepro.chapters.chapter2.measures import force_error, mean, rms
+from dexrepro.chapters.chapter2.measures import force_error, mean, rms, shown
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 
 FIGURES = {
@@ -125,7 +125,7 @@ def _draw_histories(recordings: Any, metrics: Any, config: Config) -> Any:
             look["linestyle"] = "-" if parameters.follower.regulation else (0, (4, 2))
             name = NAMES[parameters.controller] if parameters.follower.regulation else None
             histories.plot(run.time, run["object.force"], label=name, **look)
-            bars.barh(case, metrics[case]["rmse"], color=look["color"], alpha=1 if name else 0.45)
+            bars.barh(case, shown(metrics[case]["rmse"]), color=look["color"], alpha=1 if name else 0.45)
         histories.axhline(config.cases[cases[0]].desired_force, **style.LINES["reference"])
         histories.set(ylabel="$\\|F\\|$ [N]", ylim=limits[letter])
         style.panel(histories, letter.strip(), texts[letter])
@@ -135,7 +135,9 @@ def _draw_histories(recordings: Any, metrics: Any, config: Config) -> Any:
     grid[0, 1].set_title("RMSE, 20 to 40 s")
     grid[-1, 0].set_xlabel("Time [s]")
     grid[-1, 1].set_xlabel("RMSE [N]")
-    worst = 100 * max(metrics[f"s{n}"]["rmse"] / config.cases[f"s{n}"].desired_force for n in (6, 8, 12, 14, 16, 18))
+    worst = 100 * max(
+        shown(metrics[f"s{n}"]["rmse"]) / config.cases[f"s{n}"].desired_force for n in range(6, 19, 2) if n != 10
+    )
     style.title(
         figure, f"With (2.8) and movement estimation the force error is at most {worst:.1f} % of the desired force"
     )
@@ -157,16 +159,17 @@ def _draw_settings(metrics: Any, config: Config) -> Any:
     figure, (left, right) = style.subplots(1, 2, height=2.6, width_ratios=(3, 2))
     place = np.arange(len(settings))
     for shift, index, key in ((-0.2, 0, "no_impedance"), (0.2, 1, "impedance")):
-        values = [1e3 * metrics[pair[index]]["rmse"] for pair in settings.values()]
+        values = [1e3 * shown(metrics[pair[index]]["rmse"]) for pair in settings.values()]
         left.bar(place + shift, values, 0.38, color=style.LINES[LINES[key]]["color"], label=NAMES[key])
     left.set_xticks(place, list(settings), fontsize=6.5)
     left.set(ylabel="Force RMSE [mN]", yscale="log")
     left.legend(ncols=2)
     style.panel(left, "a", "Traj. 1, 1 N")
     for trajectory, marker in ((1, "o"), (2, "s")):
-        shown = [case for case in tuned if config.cases[case].leader.trajectory == trajectory]
-        names = [NAMES[config.cases[case].controller] for case in shown]
-        right.plot([1e3 * metrics[case]["rmse"] for case in shown], names, marker, label=f"Traj. {trajectory}", ms=4)
+        cases = [case for case in tuned if config.cases[case].leader.trajectory == trajectory]
+        names = [NAMES[config.cases[case].controller] for case in cases]
+        values = [1e3 * shown(metrics[case]["rmse"]) for case in cases]
+        right.plot(values, names, marker, label=f"Traj. {trajectory}", ms=4)
     right.set(xscale="log", xlabel="Force RMSE [mN]")
     right.invert_yaxis()
     right.legend()

@@ -98,19 +98,20 @@ def _draw_forces(forces: pd.DataFrame) -> Any:
 def _draw_platform(arms: pd.DataFrame, paths: pd.DataFrame) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(1, 4, height=2.5)
+    figure, axes = style.subplots(1, 4, height=2.3, width_ratios=(1.45, 1.45, 1, 1))
     for panel, (pose, rows) in zip(axes, arms.groupby("pose")):
         for arm, line in (("leader", "plain"), ("follower", "book")):
             links, colour = rows[rows["arm"] == arm], style.LINES[line]["color"]
-            panel.plot(links["x"], links["y"], "-o", color=colour, ms=3, label="partner" if arm == "leader" else arm)
+            panel.plot(links["x"], links["y"], "-o", color=colour, ms=3)
+            name, place = ("partner", -0.38) if arm == "leader" else ("follower", 0.62)
+            panel.text(place, 0.08, name, color=colour, fontsize=7)
             panel.plot(links["x"].iloc[0], links["y"].iloc[0], "s", color=colour, ms=6)
             panel.plot(links["x"].iloc[-1], links["y"].iloc[-1], "D", color=colour, ms=4)
-        panel.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", xlim=(-0.45, 1.0), ylim=(-0.08, 0.85))
+        panel.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", xlim=(-0.42, 1.0), ylim=(-0.08, 0.85))
         style.panel(panel, str(pose), f"pose {pose}")
-    axes[0].legend(loc="lower center")
     for panel, (trajectory, rows), letter in zip(axes[2:], paths.groupby("trajectory"), "cd"):
         panel.plot(rows["x"], rows["y"], color=style.BOOK)
-        for index in (10, 60, 130, 220, 330):
+        for index in (20, 100) if trajectory == 1 else (10, 60, 110, 160, 260, 360):
             ahead = rows[["x", "y"]].iloc[index + 4]
             panel.annotate(
                 "", ahead, rows[["x", "y"]].iloc[index], arrowprops={"arrowstyle": "->", "color": style.BOOK}
