@@ -137,7 +137,7 @@ def _draw_path(recording: Recording) -> Any:
     place = 1e3 * recording["leader.tip"][recording.between(0)]
     axes.plot(*place.T, **style.LINES["book"])
     axes.plot(*place[0], "o", color=style.REFERENCE, ms=4)
-    axes.text(*place[0], " start", fontsize=7)
+    axes.text(*(place[0] - (0, 0, 25)), " start", fontsize=7)
     axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
     axes.set_box_aspect(None, zoom=0.82)
     axes.locator_params(nbins=4)

@@ -140,7 +140,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         left.plot(run.time, np.abs(run["error"]), label=f"c = {config.cases[case].rate:g}", **look)
         left.axvline(metrics[case]["predicted_time"], color=look["color"], linewidth=0.6)
     left.set(yscale="log", ylim=(1e-4, 200), xlabel="Time [s]", ylabel="Prediction error [N]")
-    left.legend(loc="lower right")
+    left.legend(loc="upper center", bbox_to_anchor=(0.4, 1.0))
     style.panel(left, "a", "time from the start, equal rates")
     run = recordings["lyapunov"]
     fall = 1e3 * (run["lyapunov"][0] - run["lyapunov"])

@@ -150,9 +150,9 @@ def _draw_settings(metrics: Any, config: Config) -> Any:
     settings = {
         "joint PD": ("s6", "s8"),
         "joint PD,\nno (2.8)": ("s5", "s7"),
-        "realises (2.25)": ("impedance_6", "impedance_8"),
-        "(2.12) as printed": ("printed_6", "printed_8"),
-        "total derivative": ("total_6", "total_8"),
+        "arm realises\n(2.25)": ("impedance_6", "impedance_8"),
+        "(2.12) as\nprinted": ("printed_6", "printed_8"),
+        "total\nderivative": ("total_6", "total_8"),
     }
     settings = {name: pair for name, pair in settings.items() if set(pair) <= set(metrics)}
     tuned = [case for case in metrics if case.startswith("tuned_")]
@@ -163,18 +163,17 @@ def _draw_settings(metrics: Any, config: Config) -> Any:
         left.bar(place + shift, values, 0.38, color=style.LINES[LINES[key]]["color"], label=NAMES[key])
     left.set_xticks(place, list(settings), fontsize=6.5)
     left.set(ylabel="Force RMSE [mN]", yscale="log")
-    left.legend(ncols=2)
+    left.set_ylim(top=60)
+    left.legend(ncols=2, loc="upper right")
     style.panel(left, "a", "Traj. 1, 1 N")
-    for trajectory, marker in ((1, "o"), (2, "s")):
+    for trajectory, marker, colour in ((1, "o", style.REFERENCE), (2, "s", style.PLAIN)):
         cases = [case for case in tuned if config.cases[case].leader.trajectory == trajectory]
         names = [NAMES[config.cases[case].controller] for case in cases]
         values = [1e3 * shown(metrics[case]["rmse"]) for case in cases]
-        right.plot(values, names, marker, label=f"Traj. {trajectory}", ms=4)
+        right.plot(values, names, marker, color=colour, label=f"Traj. {trajectory}", ms=4)
     right.set(xscale="log", xlabel="Force RMSE [mN]")
     right.invert_yaxis()
     right.legend()
     style.panel(right, "b", "tuned gains, with (2.8)")
-    style.title(
-        figure, "The impedance lead helps, unless the velocity estimate drops what the coefficients' change adds"
-    )
+    style.title(figure, "The impedance lead helps, but not with the velocity estimate as printed")
     return figure

@@ -82,11 +82,12 @@ def _draw_forces(forces: pd.DataFrame) -> Any:
             panel.plot(1e3 * forces["offset"], forces[f"{model}_{axis}"], label=label, **style.LINES[line])
         panel.set(xlabel="Offset $y_1 - y_2$ [mm]", ylabel=f"$f_{axis}$ [N]")
         style.panel(panel, letter, "along the holding line" if axis == "x" else "across")
+    axes[1].set_ylim(-0.4, 0.4)
     axes[1].axhline(0, color=style.REFERENCE, linewidth=0.5)
     axes[1].annotate(
         "central: $-k_y f_y$ closes the offset",
-        (40, 0.05),
-        (-20, 2.6),
+        (70, 0.1),
+        (0, 0.25),
         fontsize=7,
         arrowprops={"arrowstyle": "->", "lw": 0.6},
     )
@@ -98,13 +99,13 @@ def _draw_forces(forces: pd.DataFrame) -> Any:
 def _draw_platform(arms: pd.DataFrame, paths: pd.DataFrame) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(1, 4, height=2.3, width_ratios=(1.45, 1.45, 1, 1))
+    figure, axes = style.subplots(1, 4, height=1.9, width_ratios=(1.45, 1.45, 1, 1))
     for panel, (pose, rows) in zip(axes, arms.groupby("pose")):
         for arm, line in (("leader", "plain"), ("follower", "book")):
             links, colour = rows[rows["arm"] == arm], style.LINES[line]["color"]
             panel.plot(links["x"], links["y"], "-o", color=colour, ms=3)
-            name, place = ("partner", -0.38) if arm == "leader" else ("follower", 0.62)
-            panel.text(place, 0.08, name, color=colour, fontsize=7)
+            name, place = ("partner", -0.4) if arm == "leader" else ("follower", 0.5)
+            panel.text(place, 0.77, name, color=colour, fontsize=7)
             panel.plot(links["x"].iloc[0], links["y"].iloc[0], "s", color=colour, ms=6)
             panel.plot(links["x"].iloc[-1], links["y"].iloc[-1], "D", color=colour, ms=4)
         panel.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", xlim=(-0.42, 1.0), ylim=(-0.08, 0.85))
