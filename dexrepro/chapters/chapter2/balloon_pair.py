@@ -99,13 +99,18 @@ class GripperServo:
         self._sample = 0
         self._torque: Array = np.zeros(arm.dof)
 
+    @property
+    def due(self) -> bool:
+        """Whether the next call looks at its target."""
+        return self._sample % 4 == 0
+
     def __call__(self, sense: Any, target: Array) -> Array:
         """Torque (7,) [N m] towards a place (3,) [m], the measured contact force compensated."""
         inverse, q = self._inverse, sense.position
         if self._sample == 0:
             inverse.reset(q)
             inverse.rest = q.copy()
-        if self._sample % 4 == 0:
+        if self.due:
             self._reference = inverse.position
             inverse(target, self._rotation)
         if self._sample % 2 == 0:
@@ -128,8 +133,10 @@ class Leader:
         self._path, self._elapsed = path, elapsed
 
     def __call__(self, sense: Any) -> Array:
-        hand = self._hand @ self._path(self._elapsed(sense.time))
-        return self._servo(sense, self._home + self._map @ hand)
+        if self._servo.due:
+            hand = self._hand @ self._path(self._elapsed(sense.time))
+            self._target = self._home + self._map @ hand
+        return self._servo(sense, self._target)
 
 
 class Follower:

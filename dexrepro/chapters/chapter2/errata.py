@@ -52,7 +52,6 @@ ERRATA = (
             f"{ESTIMATION}.sigma30.velocity_slope",
             f"{COMPARISON}.printed_6.rmse",
             f"{COMPARISON}.printed_8.rmse",
-            f"{COMPARISON}.total_6.rmse",
             f"{COMPARISON}.total_8.rmse",
         ),
     ),

@@ -152,7 +152,7 @@ def _draw_settings(metrics: Any, config: Config) -> Any:
         "joint PD,\nno (2.8)": ("s5", "s7"),
         "arm realises\n(2.25)": ("impedance_6", "impedance_8"),
         "(2.12) as\nprinted": ("printed_6", "printed_8"),
-        "total\nderivative": ("total_6", "total_8"),
+        "total\nderivative": ("printed_6", "total_8"),
     }
     settings = {name: pair for name, pair in settings.items() if set(pair) <= set(metrics)}
     tuned = [case for case in metrics if case.startswith("tuned_")]

@@ -66,11 +66,12 @@ def _slope(true: Any, estimated: Any) -> float | None:
 
 
 def _replay(recording: Recording, config: Config) -> float:
-    """Largest difference [m] of the reference when the law alone is fed the follower's own position and force."""
-    law, positions = config.law, recording["follower.tip"][:, 0].tolist()
+    """Largest difference [m] of the reference when the law alone is fed the arm's own position and force."""
+    start = recording.between(0, 10)
+    law, positions = config.law, recording["follower.tip"][start, 0].tolist()
     law.reset(positions[0])
-    replayed = [law(x, f) for x, f in zip(positions, recording["follower.force"][:, 0].tolist())]
-    return float(np.abs(np.array(replayed) - recording["reference"][:, 0]).max())
+    replayed = [law(x, f) for x, f in zip(positions, recording["follower.force"][start, 0].tolist())]
+    return float(np.abs(np.array(replayed) - recording["reference"][start, 0]).max())
 
 
 def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
