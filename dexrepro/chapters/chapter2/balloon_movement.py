@@ -177,7 +177,7 @@ def _draw_result(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
         found = bars.bar(place + shift, values, 0.38, color=colours, alpha=shade, label=phase)
         bars.bar_label(found, fmt="%.2f", fontsize=6.5)
     bars.set_xticks(place, [BARS[case][0] for case in cases], fontsize=6.5)
-    bars.set(ylabel="Force RMSE [N]", yscale="log", ylim=(0.05, 20))
+    bars.set(ylabel="Force RMSE [N]", yscale="log", ylim=(0.01, 20))
     style.panel(bars, "d", "line (pale) and circle")
     best = shown(metrics["proposed"]["rmse_circle"])
     style.title(
