@@ -43,7 +43,7 @@ scene = planar_pair.scene
 
 def simulate(config: Config, rng: Any) -> Recording:
     with scene(config) as world:
-        return planar_pair.run(world, config, config.laws[config.controller])
+        return planar_pair.run(world, config, config.law or config.laws[config.controller])
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
@@ -81,7 +81,7 @@ def tabulate(
         rows.append(
             {
                 "no": case,
-                "controller": NAMES[parameters.controller],
+                "controller": _name(case, parameters),
                 "trajectory": parameters.leader.trajectory,
                 "regulation (2.8)": "yes" if parameters.follower.regulation else "no",
                 "f_d [N]": parameters.desired_force,
@@ -108,6 +108,11 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     if {f"s{n}" for n in (5, 6, 7, 8)} <= set(recordings):
         figures["2.A"] = _draw_settings(metrics, config)
     return figures
+
+
+def _name(case: str, parameters: Config) -> str:
+    """The controller of a case; one with a law of its own goes by the name of the case."""
+    return case if parameters.law else NAMES[parameters.controller]
 
 
 def _draw_histories(recordings: Any, metrics: Any, config: Config) -> Any:
@@ -155,7 +160,7 @@ def _draw_settings(metrics: Any, config: Config) -> Any:
         "total\nderivative": ("printed_6", "total_8"),
     }
     settings = {name: pair for name, pair in settings.items() if set(pair) <= set(metrics)}
-    tuned = [case for case in metrics if case.startswith("tuned_")]
+    tuned = [case for case, parameters in config.cases.items() if case.startswith("tuned_") or parameters.law]
     figure, (left, right) = style.subplots(1, 2, height=2.6, width_ratios=(3, 2))
     place = np.arange(len(settings))
     for shift, index, key in ((-0.2, 0, "no_impedance"), (0.2, 1, "impedance")):
@@ -163,12 +168,12 @@ def _draw_settings(metrics: Any, config: Config) -> Any:
         left.bar(place + shift, values, 0.38, color=style.LINES[LINES[key]]["color"], label=NAMES[key])
     left.set_xticks(place, list(settings), fontsize=6.5)
     left.set(ylabel="Force RMSE [mN]", yscale="log")
-    left.set_ylim(top=60)
+    left.set_ylim(0.3, 60)
     left.legend(ncols=2, loc="upper right")
     style.panel(left, "a", "Traj. 1, 1 N")
     for trajectory, marker, colour in ((1, "o", style.REFERENCE), (2, "s", style.PLAIN)):
         cases = [case for case in tuned if config.cases[case].leader.trajectory == trajectory]
-        names = [NAMES[config.cases[case].controller] for case in cases]
+        names = [_name(case, config.cases[case]) for case in cases]
         values = [1e3 * shown(metrics[case]["rmse"]) for case in cases]
         right.plot(values, names, marker, color=colour, label=f"Traj. {trajectory}", ms=4)
     right.set(xscale="log", xlabel="Force RMSE [mN]")
