@@ -39,8 +39,8 @@ class Muscle:
     """Normalised stiffness X^stf of the arm and the electrodes over it.
 
     rest: level without obstacle. swell: what the movement itself adds at its middle. rises: what an obstacle of each of
-    ``heights`` [cm] adds, linear between. lead, spread: how much earlier than the passage the rise is half done, and its
-    width (phase). channels, rate [Hz], window [s] and cutoff [Hz] belong to the EMG and its envelope.
+    ``heights`` [cm] adds, linear between. lead, spread: how much earlier than the passage the rise is half done, and
+    its width (phase). channels, rate [Hz], window [s] and cutoff [Hz] belong to the EMG and its envelope.
     """
 
     rest: float = 0.030
