@@ -83,11 +83,11 @@ class Obstacle:
 class Reacher:
     """The person: how far and how reproducibly the reactions go.
 
-    directions: the style variable of turning left, forward and right. lateral, lift: reaction [cm] beside and over the
-    obstacle, one row a direction, one column a height of ``heights`` [cm]; between them everything is linear. sharpness
-    and along [cm]: of the reaction's hump and of its shift along the path, one a direction. The variations are standard
-    deviations: of the ordinary and of the reactive lift (relative), of the lateral reaction [cm], of the moment of
-    reaction (phase); so are the slow wander and the sensor noise [cm].
+    directions: the style variable of turning left, forward and right. lateral, lift: reaction [cm] beside the obstacle's
+    centre and above the ordinary reach, one row a direction, one column a height of ``heights`` [cm]; between them
+    everything is linear. sharpness, along [cm]: of the reaction's hump and of its shift along the path, one a direction.
+    The variations are standard deviations: of the ordinary and of the reactive lift (relative), of the lateral reaction
+    [cm], of the moment of reaction (phase); so are the slow wander and the sensor noise [cm].
     """
 
     directions: Sequence[float] = (0.0, 0.8, 1.0)
@@ -136,12 +136,11 @@ class Reacher:
         sharpness, along = (np.interp(direction, self.directions, row) for row in (self.sharpness, self.along))
         moment = reach.moment(obstacle.position)
         hump = bump(self.phase, np.clip(moment + late, 0.1, 0.9), sharpness)
-        ordinary_lift = bump(moment, 0.5, 8.0)
         parts = np.stack(
             [
                 np.broadcast_to(along, hump.shape) * hump,
                 (lateral + reach.locate(obstacle.position)[1] + aside) * hump,
-                (lift * over - ordinary_lift) * hump,
+                lift * over * hump,
             ],
             axis=-1,
         )
