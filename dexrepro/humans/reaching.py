@@ -83,9 +83,9 @@ class Obstacle:
 class Reacher:
     """The person: how far and how reproducibly the reactions go.
 
-    directions: the style variable of turning left, forward and right. lateral, lift: reaction [cm] beside the obstacle's
-    centre and above the ordinary reach, one row a direction, one column a height of ``heights`` [cm]; between them
-    everything is linear. sharpness, along [cm]: of the reaction's hump and of its shift along the path, one a direction.
+    directions: the style variable of turning left, forward and right. lateral, lift: reaction [cm] beside the
+    obstacle's centre and above the ordinary reach, one row a direction, one column a height of ``heights`` [cm];
+    between them everything is linear. sharpness, along [cm]: of the reaction's hump and of its shift along the path.
     The variations are standard deviations: of the ordinary and of the reactive lift (relative), of the lateral reaction
     [cm], of the moment of reaction (phase); so are the slow wander and the sensor noise [cm].
     """

@@ -76,8 +76,7 @@ def ridge_weights(features: Array, target: Array, ridge: float) -> Array:
     """Weights (p, k) of ``features`` (N, p) for ``target`` (N, k); ``ridge`` is relative to the mean power."""
     gram = features.T @ features
     gram[np.diag_indices_from(gram)] += ridge * np.trace(gram) / len(gram)
-    weights: Array = np.linalg.solve(gram, features.T @ target)
-    return weights
+    return np.asarray(np.linalg.solve(gram, features.T @ target))
 
 
 def fit_reaction(
@@ -98,8 +97,8 @@ def fit_reaction(
 class Styles:
     """Reactions of several styles as a common basis and style parameters: Delta f^k = sum_r lambda_kr B_r, Eq. (7.26).
 
-    basis (d, N, R), factors lambda (d, R, K): one set a coordinate. spectrum: singular values of the targets, (d, q) or,
-    for factors shared by the coordinates, (1, q).
+    basis (d, N, R), factors lambda (d, R, K): one set a coordinate. spectrum: singular values of the targets, (d, q),
+    or (1, q) for factors shared by the coordinates.
     """
 
     basis: Array
