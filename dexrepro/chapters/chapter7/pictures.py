@@ -1,0 +1,64 @@
+"""What the figures of this chapter share: plan and side views of the board, obstacles, the three directions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
+
+from dexrepro.humans.reaching import Obstacle, Reach
+from dexrepro.report import style
+
+Array = NDArray[np.float64]
+
+DIRECTIONS = {
+    "left": {"color": style.EXTRA[0], "linestyle": "-"},
+    "forward": {"color": style.EXTRA[1], "linestyle": (0, (5, 1))},
+    "right": {"color": style.EXTRA[2], "linestyle": (0, (3, 1, 1, 1))},
+}
+
+
+def plan(axes: Axes, paths: Array, **line: Any) -> Any:
+    """Paths (N, 3) or (k, N, 3) [cm] seen from above; returns the last line."""
+    for path in np.reshape(paths, (-1, *np.shape(paths)[-2:])):
+        (drawn,) = axes.plot(path[:, 0], path[:, 1], **line)
+    return drawn
+
+
+def side(axes: Axes, paths: Array, reach: Reach, **line: Any) -> None:
+    """Height over the progress along the straight line from start to goal [cm]."""
+    for path in np.reshape(paths, (-1, *np.shape(paths)[-2:])):
+        axes.plot((path - reach.ends[0]) @ reach.axes[0], path[:, 2], **line)
+
+
+def footprint(axes: Axes, obstacle: Obstacle, **patch: Any) -> None:
+    x, y = np.subtract(obstacle.position, obstacle.side / 2)
+    options = {"facecolor": "#D9D9D9", "edgecolor": "#555555", "linewidth": 0.6, "zorder": 0} | patch
+    axes.add_patch(Rectangle((x, y), obstacle.side, obstacle.side, **options))
+
+
+def profile(axes: Axes, obstacle: Obstacle, reach: Reach, **patch: Any) -> None:
+    """The obstacle in the side view: its shadow along the path."""
+    dx, dy = reach.axes[0, :2]
+    half = obstacle.side / 2 * (abs(dx) + abs(dy))
+    middle = reach.locate(obstacle.position)[0] * reach.length
+    options = {"facecolor": "#D9D9D9", "edgecolor": "#555555", "linewidth": 0.6, "zorder": 0} | patch
+    axes.add_patch(Rectangle((middle - half, 0), 2 * half, obstacle.height, **options))
+
+
+def ends(axes: Axes, reach: Reach) -> None:
+    """Start (open) and goal (full)."""
+    start, goal = reach.ends
+    axes.plot(*start[:2], "o", color="k", markerfacecolor="w", markersize=3.5, zorder=5)
+    axes.plot(*goal[:2], "o", color="k", markersize=3.5, zorder=5)
+
+
+def board(axes: Axes, labels: bool = True) -> None:
+    """Axes of the plan view: equal scales and the range that reactions need."""
+    axes.set_aspect("equal")
+    axes.set(xlim=(0, 22), ylim=(-3.5, 12.5))
+    if labels:
+        axes.set(xlabel="x [cm]", ylabel="y [cm]")

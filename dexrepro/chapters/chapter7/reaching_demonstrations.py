@@ -1,0 +1,237 @@
+"""Demonstrated reaches and muscle stiffness, and the ordinary skill learned from them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter7 import pictures, skills
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.report import style
+
+FIGURES = {
+    "7.6": Figure(
+        "Simulated demonstrations on the board. (a) Plan view and height of ordinary reaches (grey) and of the movement "
+        "primitive learned from them (blue); red: learned with the printed sign of D v. (b) Muscle stiffness likewise. "
+        "(c-f) Reactions to a low (2 cm) and a tall (8 cm) obstacle, far and close, in three directions; insets: height "
+        "along the path. The book's figure shows recordings of one person with a joystick.",
+        "Ordinary reaches are reproduced to a fraction of a millimetre; forward and right reactions separate for a low "
+        "obstacle and overlap for a tall one.",
+    ),
+    "7.7": Figure(
+        "Simulated muscle stiffness from EMG for the four obstacles, five repetitions in each of three directions, with "
+        "the mean ordinary stiffness as reference. The dependence on height and distance is built into the generator.",
+        "Stiffness ends higher for the tall obstacle and rises earlier for the close one.",
+    ),
+}
+TABLES = {"T7.1": "Factors and experimental conditions, completed, with what the demonstrations do"}
+RATE = 50.0
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    ordinary, reactions = skills.demonstrate(config)
+    stiffness, traces = skills.measure_stiffness(config)
+    learned = skills.Skills(config, ordinary, reactions)
+    level = skills.Primitive(config, config.dmp.stiffness_kernels)
+    mean = stiffness.mean(axis=0)[:, None]
+    target = level.target(mean, mean[-1], config.dmp.stiffness_cutoff, "even")
+    forcing = level.kernels.features(level.phases) @ level.fit(target)
+    return Recording(
+        series={
+            "time": learned.primitive.time,
+            "ordinary": by_sample(ordinary),
+            "reactions": by_sample(reactions),
+            "learned": learned.perform(),
+            "stiffness": by_sample(stiffness),
+            "traces": by_sample(traces),
+            "learned_stiffness": level.rollout(forcing, mean[0], mean[-1])[:, 0],
+        },
+        steps=len(learned.primitive.time),
+    )
+
+
+def by_sample(data: np.ndarray) -> np.ndarray:
+    """Samples first: (..., N, 3) to (N, ... 3) for paths, (..., N) to (N, ...) for traces, flattened."""
+    axis = -2 if data.shape[-1] == 3 else -1
+    moved = np.moveaxis(data, axis, 0)
+    return moved.reshape(len(moved), -1)
+
+
+def paths_of(recording: Recording, channel: str, config: Config) -> np.ndarray:
+    """Paths (..., repetitions, N, 3) of a channel of :func:`by_sample`."""
+    values = recording[channel]
+    return np.moveaxis(values.reshape(len(values), -1, config.demonstration.repetitions, 3), 0, 2)
+
+
+def traces_of(recording: Recording, config: Config) -> np.ndarray:
+    """Stiffness traces (conditions, repetitions, N)."""
+    values = recording["traces"]
+    return np.moveaxis(values.reshape(len(values), -1, config.demonstration.repetitions), 0, 2)
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    ordinary = paths_of(recording, "ordinary", config)[0]
+    stiffness = recording["stiffness"].mean(axis=1)
+    learned = recording["learned"]
+    error = recording["learned_stiffness"] - stiffness
+    return {
+        "ordinary_rmse": float(skills.rms(learned, ordinary.mean(axis=0))),
+        "ordinary_end_error": float(np.linalg.norm(learned[-1] - skills.reach(config).ends[1])),
+        "stiffness_rmse": float(np.sqrt(np.mean(error**2)) / stiffness.mean()),
+        "smallest_clearance": min(
+            float(c.obstacle.clearance(paths, config.scene.tool_radius).min())
+            for c, paths in zip(skills.conditions(config), paths_of(recording, "reactions", config))
+        ),
+        **separations(config),
+        **stiffness_metrics(recording, config),
+    }
+
+
+def separations(config: Config) -> Metrics:
+    """Sensitivity index d' between forward and right at the obstacle, from many repetitions of the same person."""
+    someone, task = skills.person(config), skills.reach(config)
+    rng, result = skills.generator(config, "separation"), {}
+    for condition in skills.conditions(config):
+        distance, height, direction = condition.labels
+        moment = round(task.moment(condition.obstacle.position) * (someone.samples - 1))
+        paths = someone.demonstrate(task, condition.obstacle, condition.direction, config.separation_repetitions, rng)
+        result[distance, height, direction] = paths[:, moment] @ task.axes[1]
+    return {
+        f"separation_{distance}_{height}": float(
+            abs(forward.mean() - right.mean()) / np.sqrt((forward.var(ddof=1) + right.var(ddof=1)) / 2)
+        )
+        for distance, height in {key[:2]: None for key in result}
+        for forward, right in [(result[distance, height, "forward"], result[distance, height, "right"])]
+    }
+
+
+def stiffness_metrics(recording: Recording, config: Config) -> Metrics:
+    bundles = skills.bundle_means(config, traces_of(recording, config))
+    final = {key: curve[-1] for key, curve in bundles.items()}
+    half = {
+        key: float(recording.time[np.argmax(curve > (curve[0] + curve[-1]) / 2)]) for key, curve in bundles.items()
+    }
+    slope = {key: np.gradient(curve, recording.time).max() for key, curve in bundles.items()}
+    return {
+        "final_ratio": float(min(final[d, "tall"] / final[d, "low"] for d in ("close", "far"))),
+        "final_difference": float(max(abs(final["close", h] / final["far", h] - 1) for h in ("low", "tall"))),
+        **{f"half_rise_{d}_{h}": half[d, h] for d, h in half},
+        "slope_difference": float(max(abs(slope["close", h] / slope["far", h] - 1) for h in ("low", "tall"))),
+    }
+
+
+def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+    if "corrected" not in recordings:
+        return {}
+    return {"7.6": draw_paths(recordings, metrics, config), "7.7": draw_stiffness(recordings["corrected"], config)}
+
+
+def draw_paths(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> Any:
+    config = case_config(config)
+    recording, task = recordings["corrected"], skills.reach(config)
+    figure, axes = style.subplots(2, 3, height=4.3)
+    plan = axes[0, 0]
+    pictures.plan(plan, paths_of(recording, "ordinary", config)[0], color="#AAAAAA", linewidth=0.6, linestyle="--")
+    pictures.plan(plan, recording["learned"], **style.LINES["book"])
+    if "printed_sign" in recordings:
+        pictures.plan(plan, recordings["printed_sign"]["learned"], **style.LINES["printed"])
+    inset = plan.inset_axes((0.42, 0.06, 0.55, 0.27))
+    pictures.side(inset, paths_of(recording, "ordinary", config)[0], task, color="#AAAAAA", linewidth=0.5)
+    pictures.side(inset, recording["learned"], task, **style.LINES["book"])
+    style_inset(inset, 2.0, task)
+    error = metrics["corrected"]["ordinary_rmse"]
+    style.panel(plan, "a", f"ordinary: {10 * error:.1f} mm off the mean")
+    level = axes[0, 1]
+    level.plot(recording.time, recording["stiffness"], color="#AAAAAA", linewidth=0.6, linestyle="--")
+    level.plot(recording.time, recording["learned_stiffness"], **style.LINES["book"])
+    if "printed_sign" in recordings:
+        level.plot(recording.time, recordings["printed_sign"]["learned_stiffness"], **style.LINES["printed"])
+    level.set(xlabel="Time [s]", ylabel="Stiffness $X^{stf}$ [-]", ylim=(0, None))
+    style.panel(level, "b", "ordinary stiffness")
+    reactions = paths_of(recording, "reactions", config)
+    panels = {("far", "low"): axes[0, 2], ("far", "tall"): axes[1, 0], ("close", "low"): axes[1, 1],
+              ("close", "tall"): axes[1, 2]}  # fmt: skip
+    insets = {key: panel.inset_axes((0.42, 0.06, 0.55, 0.27)) for key, panel in panels.items()}
+    for condition, paths in zip(skills.conditions(config), reactions):
+        key, line = condition.labels[:2], pictures.DIRECTIONS[condition.labels[2]] | {"linewidth": 0.7}
+        pictures.plan(panels[key], paths, **line)
+        pictures.side(insets[key], paths, task, **line)
+    for letter, (key, panel) in zip("cdef", panels.items()):
+        condition = next(c for c in skills.conditions(config) if c.labels[:2] == key)
+        pictures.footprint(panel, condition.obstacle)
+        pictures.profile(insets[key], condition.obstacle, task)
+        style_inset(insets[key], 13.0, task)
+        separation = metrics["corrected"][f"separation_{key[0]}_{key[1]}"]
+        style.panel(panel, letter, f"{key[1]}, {key[0]}: d' = {separation:.1f}")
+    for panel in (plan, *panels.values()):
+        pictures.board(panel)
+        pictures.ends(panel, task)
+    for name, line in pictures.DIRECTIONS.items():
+        axes[0, 2].plot([], [], label=name, **line)
+    axes[0, 2].legend(loc="upper left", handlelength=1.6, borderpad=0.1)
+    style.title(figure, "Forward and right are distinct for a low obstacle and overlap for a tall one (simulated)")
+    return figure
+
+
+def style_inset(axes: Any, top: float, task: Any) -> None:
+    axes.set(xlim=(0, task.length), ylim=(0, top), xticks=[], yticks=[0, top])
+    axes.tick_params(labelsize=5, length=1.5, pad=1)
+    axes.set_ylabel("z [cm]", fontsize=5, labelpad=-3)
+    axes.patch.set_alpha(0.85)
+
+
+def draw_stiffness(recording: Recording, config: Config) -> Any:
+    config = case_config(config)
+    figure, axes = style.subplots(2, 2, height=3.3, sharex=True, sharey=True)
+    traces = traces_of(recording, config)
+    bundles = [("far", "low"), ("far", "tall"), ("close", "low"), ("close", "tall")]
+    for letter, key, panel in zip("abcd", bundles, axes.flat):
+        for condition, group in zip(skills.conditions(config), traces):
+            if condition.labels[:2] == key:
+                line = pictures.DIRECTIONS[condition.labels[2]] | {"linewidth": 0.6}
+                panel.plot(recording.time, group.T, **line)
+        panel.plot(recording.time, recording["stiffness"].mean(axis=1), **style.LINES["reference"])
+        moment = skills.reach(config).moment(config.scene[key[0]])
+        style.event(panel, moment * config.demonstration.duration, "at obstacle")
+        style.panel(panel, letter, f"{key[1]} obstacle, {key[0]}")
+    for name, line in pictures.DIRECTIONS.items():
+        axes[0, 0].plot([], [], label=name, **line)
+    axes[0, 0].plot([], [], label="no obstacle", **style.LINES["reference"])
+    axes[0, 0].legend(loc="upper left")
+    for panel in axes[1]:
+        panel.set_xlabel("Time [s]")
+    for panel in axes[:, 0]:
+        panel.set_ylabel("Stiffness $X^{stf}$ [-]")
+    style.title(figure, "Stiffness ends higher for a tall obstacle and rises earlier for a close one (built in)")
+    return figure
+
+
+def case_config(config: Config) -> Config:
+    """The experiment's own values with what a picture needs of the run."""
+    return Config({**config, "seed": 0, "perturbation": 0.0})
+
+
+def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
+    if "corrected" not in recordings:
+        return {}
+    recording, config = recordings["corrected"], case_config(config)
+    task = skills.reach(config)
+    ordinary = paths_of(recording, "ordinary", config)[0].mean(axis=0)
+    rows = []
+    for condition, paths in zip(skills.conditions(config), paths_of(recording, "reactions", config)):
+        offset = (paths - ordinary) @ task.axes[1]
+        widest = np.abs(offset).argmax(axis=1)
+        distance, height, direction = condition.labels
+        rows.append(
+            {
+                "distance to obstacle": f"{'long' if distance == 'far' else 'short'} ({condition.distance:.1f} cm)",
+                "height of obstacle": f"{height} ({condition.obstacle.height:g} cm)",
+                "direction": direction,
+                "mean clearance [cm]": condition.obstacle.clearance(paths, config.scene.tool_radius).mean(),
+                "mean lift [cm]": paths[..., 2].max(axis=1).mean(),
+                "lateral excursion [cm, left +]": offset[np.arange(len(paths)), widest].mean(),
+            }
+        )
+    return {"T7.1": pd.DataFrame(rows)}
