@@ -110,9 +110,7 @@ def separations(config: Config) -> Metrics:
 def stiffness_metrics(recording: Recording, config: Config) -> Metrics:
     bundles = skills.bundle_means(config, traces_of(recording, config))
     final = {key: curve[-1] for key, curve in bundles.items()}
-    half = {
-        key: float(recording.time[np.argmax(curve > (curve[0] + curve[-1]) / 2)]) for key, curve in bundles.items()
-    }
+    half = {key: float(recording.time[np.argmax(curve > (curve[0] + curve[-1]) / 2)]) for key, curve in bundles.items()}
     slope = {key: np.gradient(curve, recording.time).max() for key, curve in bundles.items()}
     return {
         "final_ratio": float(min(final[d, "tall"] / final[d, "low"] for d in ("close", "far"))),

@@ -16,8 +16,8 @@ from dexrepro.experiment import Config
 from dexrepro.humans.muscle import Muscle, low_pass
 from dexrepro.humans.reaching import Obstacle, Reach, Reacher
 from dexrepro.networks.fuzzy import FuzzySystem
-from dexrepro.primitives import GaussianKernels, SpringDamper, phase
-from dexrepro.primitives.reactive import EnhancedKernels, Styles, path_scaling, ridge_weights
+from dexrepro.primitives import ExtendedKernels, GaussianKernels, SpringDamper, phase
+from dexrepro.primitives.reactive import Styles, path_scaling, ridge_weights
 
 Array = NDArray[np.float64]
 
@@ -152,6 +152,15 @@ class Primitive:
         return start + velocity / period
 
 
+def enhancement(config: Config, kernels: GaussianKernels) -> ExtendedKernels:
+    """The kernels with ``groups`` of random enhancement nodes; fewer groups are a prefix, ``first(nodes * groups)``."""
+    settings = config.enhancement
+    rng = generator(config, f"enhancement nodes {settings.draw}")
+    return ExtendedKernels.draw(
+        kernels, settings.groups * settings.nodes, rng, settings.weight_std, settings.bias_range
+    )
+
+
 class Skills:
     """The ordinary skill and the reactive skills of every condition, learned from demonstrations (Steps 6.1 to 6.3)."""
 
@@ -160,9 +169,7 @@ class Skills:
         self.primitive = Primitive(config, config.dmp.kernels)
         self.start, self.goal = self.reach.ends
         self.demonstrated = reactions.mean(axis=1)
-        self.enhanced = EnhancedKernels.draw(
-            self.primitive.kernels, **config.enhancement.nodes, rng=generator(config, "enhancement nodes")
-        )
+        self.features = enhancement(config, self.primitive.kernels)
         target = self.target(ordinary).mean(axis=0)
         self.weights = self.primitive.fit(target)
         self.forcing = self.primitive.kernels.features(self.primitive.phases) @ self.weights
@@ -177,8 +184,8 @@ class Skills:
         style = self.config.style
         targets = self.reaction_targets @ self.reach.axes.T
         styles = Styles.separate(targets, style.rank, style.shared)
-        weights = styles.fit(self.enhanced, self.primitive.phases, self.config.enhancement.ridge)
-        return self.enhanced.features(self.primitive.phases) @ weights
+        weights = styles.fit(self.features, self.primitive.phases, self.config.enhancement.ridge)
+        return self.features.blocks(self.primitive.phases).change @ weights
 
     def perform(self, reactions: ArrayLike = 0.0) -> Array:
         """Movements (..., N, 3) [cm] of the old task with reactions (..., N, 3) in the path's frame added."""
