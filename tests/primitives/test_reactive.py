@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from dexrepro.primitives import ExtendedKernels, GaussianKernels, SpringDamper, phase
+from dexrepro.primitives import GaussianKernels, SpringDamper, phase
+from dexrepro.primitives.incremental import ExtendedKernels
 from dexrepro.primitives.reactive import Styles, fit_reaction, path_scaling, ridge_weights
 
 PHASES = phase(np.linspace(0, 5, 301), 5.0, 4.0)

@@ -16,7 +16,8 @@ from dexrepro.experiment import Config
 from dexrepro.humans.muscle import Muscle, low_pass
 from dexrepro.humans.reaching import Obstacle, Reach, Reacher
 from dexrepro.networks.fuzzy import FuzzySystem
-from dexrepro.primitives import ExtendedKernels, GaussianKernels, SpringDamper, phase
+from dexrepro.primitives import GaussianKernels, SpringDamper, phase
+from dexrepro.primitives.incremental import ExtendedKernels
 from dexrepro.primitives.reactive import Styles, path_scaling, ridge_weights
 
 Array = NDArray[np.float64]
