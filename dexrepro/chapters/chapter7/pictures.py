@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
@@ -54,6 +56,41 @@ def ends(axes: Axes, reach: Reach) -> None:
     start, goal = reach.ends
     axes.plot(*start[:2], "o", color="k", markerfacecolor="w", markersize=3.5, zorder=5)
     axes.plot(*goal[:2], "o", color="k", markersize=3.5, zorder=5)
+
+
+def name_directions(axes: Axes, **options: Any) -> None:
+    for name, line in DIRECTIONS.items():
+        axes.plot([], [], label=name, **line)
+    axes.legend(**({"loc": "upper left", "handlelength": 2.2, "borderpad": 0.1} | options))
+
+
+def plans_over_sides(rows: int, columns: int, height: float) -> tuple[Figure, Any, Any]:
+    """A figure of plan views (rows, columns), each with the height over the path below it."""
+    figure = plt.figure(figsize=(style.TWO_COLUMNS, height))
+    grid = figure.add_gridspec(2 * rows, columns, height_ratios=[2.1, 1.0] * rows)
+    plans, sides = (
+        np.array([[figure.add_subplot(grid[2 * r + k, c]) for c in range(columns)] for r in range(rows)])
+        for k in (0, 1)
+    )
+    for panel in plans.flat:
+        board(panel, labels=False)
+    for panel in sides.flat:
+        panel.set(xlabel="Along the straight line [cm]")
+    for panel in plans[:, 0]:
+        panel.set_ylabel("y [cm]")
+    for panel in sides[:, 0]:
+        panel.set_ylabel("z [cm]")
+    return figure, plans, sides
+
+
+def joined(figure: Figure, plans: Any, sides: Any, row: int, column: int) -> Axes:
+    """One panel in the place of a plan and a side view."""
+    upper, lower = plans[row, column], sides[row, column]
+    whole = upper.get_subplotspec().get_gridspec()[2 * row : 2 * row + 2, column]
+    upper.remove()
+    lower.remove()
+    plans[row, column] = sides[row, column] = axes = figure.add_subplot(whole)
+    return axes
 
 
 def board(axes: Axes, labels: bool = True) -> None:

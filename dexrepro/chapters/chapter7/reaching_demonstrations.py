@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from dexrepro.chapters.chapter7 import pictures, skills
+from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import Config, Figure, Metrics, Recording
-from dexrepro.report import style
 
 FIGURES = {
     "7.6": Figure(
-        "Simulated demonstrations on the board. (a) Plan view and height of ordinary reaches (grey) and of the movement "
-        "primitive learned from them (blue); red: learned with the printed sign of D v. (b) Muscle stiffness likewise. "
-        "(c-f) Reactions to a low (2 cm) and a tall (8 cm) obstacle, far and close, in three directions; insets: height "
-        "along the path. The book's figure shows recordings of one person with a joystick.",
+        "Simulated demonstrations on the board. (a) Plan view and height of ordinary reaches (grey) and of the "
+        "movement primitive learned from them (blue); red: learned with the printed sign of D v. (b) Muscle stiffness "
+        "likewise. (c-f) Reactions to a low (2 cm) and a tall (8 cm) obstacle, far and close, in three directions; "
+        "d': distance of forward and right at the obstacle in standard deviations. The book's figure shows recordings of one person with a joystick.",
         "Ordinary reaches are reproduced to a fraction of a millimetre; forward and right reactions separate for a low "
         "obstacle and overlap for a tall one.",
     ),
     "7.7": Figure(
-        "Simulated muscle stiffness from EMG for the four obstacles, five repetitions in each of three directions, with "
-        "the mean ordinary stiffness as reference. The dependence on height and distance is built into the generator.",
+        "Simulated muscle stiffness from EMG for the four obstacles, five repetitions in each of three directions, "
+        "with the mean ordinary stiffness as reference. The dependence on height and distance is built in.",
         "Stiffness ends higher for the tall obstacle and rises earlier for the close one.",
     ),
 }
@@ -120,68 +120,56 @@ def stiffness_metrics(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
     if "corrected" not in recordings:
         return {}
+    config = config.cases.corrected
     return {"7.6": draw_paths(recordings, metrics, config), "7.7": draw_stiffness(recordings["corrected"], config)}
 
 
-def draw_paths(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> Any:
-    config = case_config(config)
+def draw_paths(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> Any:
+    from dexrepro.chapters.chapter7 import pictures
+    from dexrepro.report import style
+
     recording, task = recordings["corrected"], skills.reach(config)
-    figure, axes = style.subplots(2, 3, height=4.3)
-    plan = axes[0, 0]
-    pictures.plan(plan, paths_of(recording, "ordinary", config)[0], color="#AAAAAA", linewidth=0.6, linestyle="--")
-    pictures.plan(plan, recording["learned"], **style.LINES["book"])
-    if "printed_sign" in recordings:
-        pictures.plan(plan, recordings["printed_sign"]["learned"], **style.LINES["printed"])
-    inset = plan.inset_axes((0.42, 0.06, 0.55, 0.27))
-    pictures.side(inset, paths_of(recording, "ordinary", config)[0], task, color="#AAAAAA", linewidth=0.5)
-    pictures.side(inset, recording["learned"], task, **style.LINES["book"])
-    style_inset(inset, 2.0, task)
-    error = metrics["corrected"]["ordinary_rmse"]
-    style.panel(plan, "a", f"ordinary: {10 * error:.1f} mm off the mean")
-    level = axes[0, 1]
+    figure, plans, sides = pictures.plans_over_sides(2, 3, height=5.4)
+    level = pictures.joined(figure, plans, sides, 0, 1)
     level.plot(recording.time, recording["stiffness"], color="#AAAAAA", linewidth=0.6, linestyle="--")
-    level.plot(recording.time, recording["learned_stiffness"], **style.LINES["book"])
-    if "printed_sign" in recordings:
-        level.plot(recording.time, recordings["printed_sign"]["learned_stiffness"], **style.LINES["printed"])
-    level.set(xlabel="Time [s]", ylabel="Stiffness $X^{stf}$ [-]", ylim=(0, None))
+    level.set(xlabel="Time [s]", ylabel="Stiffness $X^{stf}$ [-]", ylim=(0.02, 0.045))
     style.panel(level, "b", "ordinary stiffness")
-    reactions = paths_of(recording, "reactions", config)
-    panels = {("far", "low"): axes[0, 2], ("far", "tall"): axes[1, 0], ("close", "low"): axes[1, 1],
-              ("close", "tall"): axes[1, 2]}  # fmt: skip
-    insets = {key: panel.inset_axes((0.42, 0.06, 0.55, 0.27)) for key, panel in panels.items()}
-    for condition, paths in zip(skills.conditions(config), reactions):
-        key, line = condition.labels[:2], pictures.DIRECTIONS[condition.labels[2]] | {"linewidth": 0.7}
-        pictures.plan(panels[key], paths, **line)
-        pictures.side(insets[key], paths, task, **line)
-    for letter, (key, panel) in zip("cdef", panels.items()):
-        condition = next(c for c in skills.conditions(config) if c.labels[:2] == key)
-        pictures.footprint(panel, condition.obstacle)
-        pictures.profile(insets[key], condition.obstacle, task)
-        style_inset(insets[key], 13.0, task)
-        separation = metrics["corrected"][f"separation_{key[0]}_{key[1]}"]
-        style.panel(panel, letter, f"{key[1]}, {key[0]}: d' = {separation:.1f}")
-    for panel in (plan, *panels.values()):
-        pictures.board(panel)
-        pictures.ends(panel, task)
-    for name, line in pictures.DIRECTIONS.items():
-        axes[0, 2].plot([], [], label=name, **line)
-    axes[0, 2].legend(loc="upper left", handlelength=1.6, borderpad=0.1)
+    ordinary = paths_of(recording, "ordinary", config)[0]
+    pictures.plan(plans[0, 0], ordinary, color="#AAAAAA", linewidth=0.6, linestyle="--")
+    pictures.side(sides[0, 0], ordinary, task, color="#AAAAAA", linewidth=0.6, linestyle="--")
+    for case, line in (("corrected", "book"), ("printed_sign", "printed")):
+        if case in recordings:
+            pictures.plan(plans[0, 0], recordings[case]["learned"], **style.LINES[line])
+            pictures.side(sides[0, 0], recordings[case]["learned"], task, **style.LINES[line])
+            level.plot(recording.time, recordings[case]["learned_stiffness"], **style.LINES[line])
+    sides[0, 0].set_ylim(0, 2)
+    style.panel(plans[0, 0], "a", f"ordinary, {10 * metrics['corrected']['ordinary_rmse']:.1f} mm off")
+    places = {("far", "low"): (0, 2), ("far", "tall"): (1, 0), ("close", "low"): (1, 1), ("close", "tall"): (1, 2)}
+    for condition, paths in zip(skills.conditions(config), paths_of(recording, "reactions", config)):
+        place, line = places[condition.labels[:2]], pictures.DIRECTIONS[condition.labels[2]] | {"linewidth": 0.7}
+        pictures.plan(plans[place], paths, **line)
+        pictures.side(sides[place], paths, task, **line)
+        if condition.labels[2] == "left":
+            pictures.footprint(plans[place], condition.obstacle)
+            pictures.profile(sides[place], condition.obstacle, task)
+            sides[place].set_ylim(0, 13)
+    for letter, ((distance, height), place) in zip("cdef", places.items()):
+        separation = metrics["corrected"][f"separation_{distance}_{height}"]
+        style.panel(plans[place], letter, f"{height}, {distance}: d' = {separation:.1f}")
+    for place in ((0, 0), *places.values()):
+        pictures.ends(plans[place], task)
+    pictures.name_directions(plans[0, 2])
     style.title(figure, "Forward and right are distinct for a low obstacle and overlap for a tall one (simulated)")
     return figure
 
 
-def style_inset(axes: Any, top: float, task: Any) -> None:
-    axes.set(xlim=(0, task.length), ylim=(0, top), xticks=[], yticks=[0, top])
-    axes.tick_params(labelsize=5, length=1.5, pad=1)
-    axes.set_ylabel("z [cm]", fontsize=5, labelpad=-3)
-    axes.patch.set_alpha(0.85)
-
-
 def draw_stiffness(recording: Recording, config: Config) -> Any:
-    config = case_config(config)
+    from dexrepro.chapters.chapter7 import pictures
+    from dexrepro.report import style
+
     figure, axes = style.subplots(2, 2, height=3.3, sharex=True, sharey=True)
     traces = traces_of(recording, config)
     bundles = [("far", "low"), ("far", "tall"), ("close", "low"), ("close", "tall")]
@@ -194,10 +182,8 @@ def draw_stiffness(recording: Recording, config: Config) -> Any:
         moment = skills.reach(config).moment(config.scene[key[0]])
         style.event(panel, moment * config.demonstration.duration, "at obstacle")
         style.panel(panel, letter, f"{key[1]} obstacle, {key[0]}")
-    for name, line in pictures.DIRECTIONS.items():
-        axes[0, 0].plot([], [], label=name, **line)
     axes[0, 0].plot([], [], label="no obstacle", **style.LINES["reference"])
-    axes[0, 0].legend(loc="upper left")
+    pictures.name_directions(axes[0, 0])
     for panel in axes[1]:
         panel.set_xlabel("Time [s]")
     for panel in axes[:, 0]:
@@ -206,15 +192,12 @@ def draw_stiffness(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def case_config(config: Config) -> Config:
-    """The experiment's own values with what a picture needs of the run."""
-    return Config({**config, "seed": 0, "perturbation": 0.0})
-
-
-def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
+) -> dict[str, pd.DataFrame]:
     if "corrected" not in recordings:
         return {}
-    recording, config = recordings["corrected"], case_config(config)
+    recording, config = recordings["corrected"], config.cases.corrected
     task = skills.reach(config)
     ordinary = paths_of(recording, "ordinary", config)[0].mean(axis=0)
     rows = []

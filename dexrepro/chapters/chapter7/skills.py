@@ -131,7 +131,7 @@ class Primitive:
         return ridge_weights(self.kernels.features(self.phases), target, self.ridge)
 
     def rollout(self, forcing: Array, start: ArrayLike, goal: ArrayLike, printed: bool = False) -> Array:
-        """Movements (..., N, d) under forcing terms (..., N, d), Eq. (7.36); ``printed``: with T X' = V' as in (7.33)."""
+        """Movements (..., N, d) under forcing terms (..., N, d), Eq. (7.36); ``printed``: T X' = V' as in (7.33)."""
         if printed:
             return self._printed_rollout(forcing, np.asarray(start, float), np.asarray(goal, float))
         return self.system.solve(forcing, 1 / (len(self.time) - 1), start, goal)[0]
@@ -153,10 +153,10 @@ class Primitive:
         return start + velocity / period
 
 
-def enhancement(config: Config, kernels: GaussianKernels) -> ExtendedKernels:
+def enhancement(config: Config, kernels: GaussianKernels, draw: int | None = None) -> ExtendedKernels:
     """The kernels with ``groups`` of random enhancement nodes; fewer groups are a prefix, ``first(nodes * groups)``."""
     settings = config.enhancement
-    rng = generator(config, f"enhancement nodes {settings.draw}")
+    rng = generator(config, f"enhancement nodes {settings.draw if draw is None else draw}")
     return ExtendedKernels.draw(
         kernels, settings.groups * settings.nodes, rng, settings.weight_std, settings.bias_range
     )

@@ -1,0 +1,19 @@
+"""Chapter 7: skills that react to obstacles, carried over to new tasks by fuzzy rules, executed with variable impedance."""
+
+from dexrepro.chapters.chapter7 import (
+    claims,
+    errata,
+    fuzzy_generalisation,
+    reaching_demonstrations,
+    reactive_learning,
+    style_separation,
+)
+from dexrepro.experiment import Experiment
+
+TITLE = "Incremental skill learning from human reactions"
+EXPERIMENTS = tuple(
+    Experiment.of(module)
+    for module in (reaching_demonstrations, reactive_learning, style_separation, fuzzy_generalisation)
+)
+CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES
+ERRATA = errata.ERRATA
