@@ -74,6 +74,7 @@ def plans_over_sides(rows: int, columns: int, height: float) -> tuple[Figure, An
     )
     for panel in plans.flat:
         board(panel, labels=False)
+        panel.set_xlabel("x [cm]", labelpad=1)
     for panel in sides.flat:
         panel.set(xlabel="Along the straight line [cm]")
     for panel in plans[:, 0]:

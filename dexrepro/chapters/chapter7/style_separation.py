@@ -17,7 +17,7 @@ FIGURES = {
         "Error of the twelve learned reactions against the number of style parameters (simulated; not in the book). "
         "(a) Style parameters of each coordinate, (b) shared by the three coordinates; open: worst reaction, number: "
         "reactions that touch the obstacle. (c) Singular values of the reactive forcing terms of each coordinate. "
-        "Dotted: demonstrations whose shape differs between directions.",
+        "Green: demonstrations whose shape differs between directions.",
         "One style parameter a reaction is not enough for two obstacles; two a coordinate are.",
     ),
 }
@@ -75,7 +75,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, 3, height=2.6)
-    pairs = {"per_coordinate": ("book", axes[0]), "non_separable": ("printed", axes[0]), "shared": ("book", axes[1])}
+    pairs = {"per_coordinate": ("book", axes[0]), "non_separable": ("extra1", axes[0]), "shared": ("book", axes[1])}
     for name, (line, panel) in pairs.items():
         if name not in recordings:
             continue
@@ -86,15 +86,15 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
             panel.semilogy(ranks["rank"], 10 * ranks["worst"], "o", fillstyle="none", color=style.BOOK, label="worst")
             for row in ranks.itertuples():
                 if row.collisions:
-                    panel.annotate(f"{row.collisions} touch", (row.rank, 10 * row.worst), xytext=(6, 0),
+                    panel.annotate(f"{row.collisions} touch", (row.rank, 10 * row.worst), xytext=(7, -1),
                                    textcoords="offset points", fontsize=6.5, va="center")  # fmt: skip
     for letter, panel, text in zip("ab", axes, ("a set of each coordinate", "one set for all coordinates")):
         panel.axhline(
             10 * metrics["per_coordinate"]["spread"], label="spread of repetitions", **style.LINES["reference"]
         )
-        panel.set(xlabel="Style parameters R [-]", ylabel="RMS error [mm]", ylim=(0.1, 60), xticks=range(1, 7))
+        panel.set(xlabel="Style parameters R [-]", ylabel="RMS error [mm]", ylim=(0.1, 300), xticks=range(1, 7))
         style.panel(panel, letter, text)
-    axes[0].legend()
+    axes[0].legend(loc="upper right", fontsize=6.5)
     spectrum = recordings["per_coordinate"].frames["spectrum"]
     names = ("along", "lateral", "vertical")
     for column, name, line in zip(spectrum.columns, names, ("extra1", "extra2", "book")):
