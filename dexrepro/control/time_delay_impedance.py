@@ -16,6 +16,12 @@ class NominalModel(Protocol):
     def bias(self, position: Array, velocity: Array) -> Array: ...
 
 
+class Impedance(Protocol):
+    """K_imp [N m s/rad] a joint from the muscle stiffness X^stf and r (n,)."""
+
+    def __call__(self, stiffness: float, error: Array) -> Array: ...
+
+
 class MuscleImpedance:
     """K_imp = k_s X^stf, Eq. (7.37). ``stiffness_gain`` k_s [N m s/rad] for a normalised muscle stiffness."""
 
@@ -74,7 +80,7 @@ class TimeDelayImpedance:
         model: NominalModel,
         dt: float,
         error_slope: float,
-        impedance: MuscleImpedance | ConstantImpedance | RobustImpedance,
+        impedance: Impedance,
         sign: Literal["corrected", "printed", "printed_first_line"] = "corrected",
         estimation: bool = True,
         velocity_filter: float = 1.0,
@@ -117,6 +123,28 @@ class TimeDelayImpedance:
         delayed = delayed + self.velocity_filter * (torque - delayed)
         self._previous = (delayed, velocity, mass, bias)
         return torque
+
+
+class GravityImpedance:
+    """tau = G(q) + K_imp r: the plain rival, with the same signature, error r and nominal ``model``."""
+
+    def __init__(
+        self, model: NominalModel, dt: float, error_slope: float, impedance: Impedance, torque_limit: float = np.inf
+    ) -> None:
+        self.model, self.dt, self.error_slope, self.impedance = model, dt, error_slope, impedance
+        self.torque_limit = torque_limit
+        self.reset()
+
+    def reset(self) -> None:
+        self.error = np.zeros(0)
+
+    def __call__(
+        self, position: Array, velocity: Array, desired: tuple[Array, Array, Array], stiffness: float = 0.0
+    ) -> Array:
+        """Joint torque [N m], as for :class:`TimeDelayImpedance`."""
+        self.error = r = desired[1] - velocity + self.error_slope * (desired[0] - position)
+        torque = self.model.gravity(position) + self.impedance(stiffness, r) * r
+        return np.clip(torque, -self.torque_limit, self.torque_limit)
 
 
 def sampled_spectral_radius(mass: ArrayLike, nominal_mass: ArrayLike, impedance: ArrayLike, dt: float) -> float:

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from dexrepro.control.time_delay_impedance import (
     ConstantImpedance,
+    GravityImpedance,
     MuscleImpedance,
     RobustImpedance,
     TimeDelayImpedance,
@@ -168,3 +169,13 @@ def test_matched_torque_filter_keeps_a_filtered_velocity_stable():
         worst[matched] = np.sqrt(np.mean(np.square(errors)))
     assert worst[True] < 1e-3
     assert worst[False] > 10 * worst[True]
+
+
+def test_plain_impedance_holds_gravity_and_yields_to_a_push_by_its_gain():
+    plant = Axis(weight=0.05)
+    law = GravityImpedance(plant, DT, 20.0, ConstantImpedance(0.5))
+    assert law(np.array([0.3]), np.zeros(1), (np.array([0.3]), np.zeros(1), np.zeros(1))) == pytest.approx(
+        plant.gravity(np.array([0.3]))
+    )
+    torque = law(np.array([0.0]), np.zeros(1), (np.array([0.01]), np.zeros(1), np.zeros(1)))
+    assert torque - plant.gravity(np.zeros(1)) == pytest.approx(0.5 * 20.0 * 0.01)

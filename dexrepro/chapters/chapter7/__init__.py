@@ -4,6 +4,8 @@ from dexrepro.chapters.chapter7 import (
     claims,
     errata,
     fuzzy_generalisation,
+    impedance_stability,
+    impedance_tracking,
     reaching_demonstrations,
     reactive_learning,
     style_separation,
@@ -13,7 +15,14 @@ from dexrepro.experiment import Experiment
 TITLE = "Incremental skill learning from human reactions"
 EXPERIMENTS = tuple(
     Experiment.of(module)
-    for module in (reaching_demonstrations, reactive_learning, style_separation, fuzzy_generalisation)
+    for module in (
+        reaching_demonstrations,
+        reactive_learning,
+        style_separation,
+        fuzzy_generalisation,
+        impedance_tracking,
+        impedance_stability,
+    )
 )
 CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES
 ERRATA = errata.ERRATA

@@ -18,9 +18,9 @@ from dexrepro.experiment import Config, Recording
 from dexrepro.humans.reaching import Obstacle
 from dexrepro.physics.elements import JointLoad, Push, joint_friction
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
-from dexrepro.robots.arm import Pose
 from dexrepro.robots.pen_arm import LENGTH, gripper, pen_arm
 
 Array = NDArray[np.float64]
@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 BOARD = (0.13, 0.21)  # m, depth and width; printed in Sect. 7.4
 ARM_BASE = (-0.09, 0.105, 0.10)  # m, from the front left corner of the board
 CUBE = 0.018  # m, edge of the carried cube
+CAMERA = Camera(target=(0.13, 0.0, -0.05), distance=0.42, yaw=60.0, pitch=-28.0)
+WOOD, RED, GREEN = (0.93, 0.87, 0.72, 1.0), (0.84, 0.37, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
 
 
 def to_robot(points: Array) -> Array:
@@ -93,35 +95,47 @@ def planned(config: Config) -> tuple[skills.NewTask, Reference]:
     task = skills.NewTask(config, skills.Skills(config, ordinary, reactions))
     _, traces = skills.measure_stiffness(config)
     stiffness = skills.generalised_stiffness(config, task, traces, "average")
-    return task, Reference.of(task.perform(task.reaction(config.task.direction)), stiffness, config)
+    path = task.perform(task.reaction(config.task.direction))
+    return task, Reference.of(path, stiffness, config)
 
 
 def scene(config: Config) -> World:
     """Arm with gripper, board, cube stack and the cube to carry, at the start of the task."""
     world = build(config, to_robot(np.array([*config.task.start, 0.0])))
-    add_stack(world, Obstacle(config.task.obstacle, config.task.height, config.scene.cube))
-    world.add_box("board", (*BOARD, 0.004), (0.09 + BOARD[0] / 2, 0.0, -0.112), colour=(0.93, 0.87, 0.72, 1.0))
-    world.add_box("cube", (CUBE,) * 3, (0, 0, 0), colour=(0.84, 0.37, 0.0, 1.0), collides=False)
+    furnish(world, Obstacle(config.task.obstacle, config.task.height, config.scene.cube))
     return world
 
 
 def build(config: Config, start: Array, contacts: bool = False) -> World:
     """The arm alone, its tip at ``start`` [m], with the friction and the gripper that its model does not know."""
     world = World(step=config.physics_step, perturbation=config.perturbation)
-    sensor = Sensor(**config.sensor)
-    arm = pen_arm(gripper(config.arm.gripper_mass), effort=config.arm.torque_limit)
+    arm = pen_arm(gripper(config.arm.gripper_mass), effort=config.torque_limit)
     angles = joint_angles(start) - np.asarray(config.initial_error)
-    world.add_arm("arm", arm, angles, contacts=contacts, sensor=sensor)
+    world.add_arm("arm", arm, angles, contacts=contacts, sensor=Sensor(**(config.sensor or {})))
     world.add(JointLoad("arm", joint_friction(config.arm.viscous, config.arm.coulomb)))
     return world
 
 
-def add_stack(world: World, obstacle: Obstacle, name: str = "stack", **contact: float) -> None:
+def furnish(world: World, obstacle: Obstacle) -> None:
+    """Board, stack and carried cube, for pictures; the board lies a tool's radius below the points of the paths."""
+    world.add_box("board", (*BOARD, 0.004), (0.09 + BOARD[0] / 2, 0.0, -0.112), colour=WOOD, collides=False)
+    world.add_box("cube", (CUBE,) * 3, (0.0, 0.0, 0.0), colour=RED, collides=False)
+    add_stack(world, obstacle, collides=False)
+
+
+def add_stack(world: World, obstacle: Obstacle, **contact: Any) -> None:
     """The cube stack (position and height in cm) as a static body."""
     x, y, _ = to_robot(np.array([*obstacle.position, 0.0]))
-    side, height = obstacle.side / 100, obstacle.height / 100
-    colour = (0.0, 0.62, 0.45, 1.0)
-    world.add_box(name, (side, side, height), (x, y, -0.10 + height / 2), colour=colour, **contact)
+    side, height = obstacle.side / 100, obstacle.height / 100 + 0.01
+    world.add_box("stack", (side, side, height), (x, y, -0.11 + height / 2), colour=GREEN, **contact)
+
+
+def photographs(world: World, positions: dict[str, Array], cube: dict[str, Array]) -> dict[str, NDArray[np.uint8]]:
+    """Pictures with the arm at joint angles and the cube at points [m] of the robot's frame, by name."""
+    return {
+        name: world.render({"arm": angles}, {"cube": cube[name]}, CAMERA, (420, 320))
+        for name, angles in positions.items()
+    }
 
 
 def run(config: Config, reference: Reference, world: World, **options: Any) -> Recording:
@@ -192,13 +206,11 @@ def tracking_metrics(recording: Recording, config: Config) -> dict[str, float | 
         float(np.abs(torque).max()),
         float(np.abs(np.diff(torque, axis=0)).sum(axis=0).mean()),
     )
-    return dict(zip(names, values if diverged is None else (None,) * 4)) | {"diverged_at": diverged}
+    finished = {"finished": int(diverged is None), "diverged_at": diverged}
+    return dict(zip(names, values if diverged is None else (None,) * 4)) | finished
 
 
 def push(times: list[tuple[float, float]], force: list[float]) -> Push:
     """A force [N] on the tip during intervals (start, end) [s]."""
     off = (0.0, 0.0, 0.0)
     return Push("arm", lambda t: force if any(start <= t < end for start, end in times) else off)
-
-
-__all__ = ["Pose", "Reference", "build", "forward", "joint_angles", "planned", "run", "scene", "to_board", "to_robot"]
