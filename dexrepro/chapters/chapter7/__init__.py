@@ -6,6 +6,7 @@ from dexrepro.chapters.chapter7 import (
     fuzzy_generalisation,
     impedance_stability,
     impedance_tracking,
+    obstacle_contact,
     reaching_demonstrations,
     reactive_learning,
     style_separation,
@@ -22,6 +23,7 @@ EXPERIMENTS = tuple(
         fuzzy_generalisation,
         impedance_tracking,
         impedance_stability,
+        obstacle_contact,
     )
 )
 CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES

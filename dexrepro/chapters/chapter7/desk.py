@@ -5,7 +5,7 @@ Board coordinates are in cm, the robot's in m.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -21,14 +21,16 @@ from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
-from dexrepro.robots.pen_arm import LENGTH, gripper, pen_arm
+from dexrepro.robots.arm import Pose, Shape
+from dexrepro.robots.pen_arm import DARK, LENGTH, gripper, pen_arm
 
 Array = NDArray[np.float64]
 
 BOARD = (0.13, 0.21)  # m, depth and width; printed in Sect. 7.4
 ARM_BASE = (-0.09, 0.105, 0.10)  # m, from the front left corner of the board
 CUBE = 0.018  # m, edge of the carried cube
-CAMERA = Camera(target=(0.13, 0.0, -0.05), distance=0.42, yaw=60.0, pitch=-28.0)
+JAWS = tuple(Shape("box", (0.022, 0.004, 0.016), Pose((-0.002, side, 0.0)), DARK) for side in (-0.012, 0.012))
+CAMERA = Camera(target=(0.14, 0.0, -0.045), distance=0.33, yaw=62.0, pitch=-24.0)
 WOOD, RED, GREEN = (0.93, 0.87, 0.72, 1.0), (0.84, 0.37, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
 
 
@@ -109,7 +111,8 @@ def scene(config: Config) -> World:
 def build(config: Config, start: Array, contacts: bool = False) -> World:
     """The arm alone, its tip at ``start`` [m], with the friction and the gripper that its model does not know."""
     world = World(step=config.physics_step, perturbation=config.perturbation)
-    arm = pen_arm(gripper(config.arm.gripper_mass), effort=config.torque_limit)
+    jaws = () if contacts else JAWS  # what touches is the rounded end of the forearm
+    arm = pen_arm(replace(gripper(config.arm.gripper_mass), shapes=jaws), effort=config.torque_limit)
     angles = joint_angles(start) - np.asarray(config.initial_error)
     world.add_arm("arm", arm, angles, contacts=contacts, sensor=Sensor(**(config.sensor or {})))
     world.add(JointLoad("arm", joint_friction(config.arm.viscous, config.arm.coulomb)))

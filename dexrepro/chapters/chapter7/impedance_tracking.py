@@ -127,7 +127,7 @@ def draw_tracking(recordings: Mapping[str, Recording], metrics: Mapping[str, Any
             distance = desk.tip_error(recordings[name])
             error.semilogy(recordings[name].time, np.maximum(distance, 1e-6), label=label, **style.LINES[line])
     error.set(xlabel="Time [s]", ylabel="Tip error [mm]", ylim=(1e-5, 10))
-    error.legend(loc="lower right")
+    error.legend(loc="center right", bbox_to_anchor=(1.0, 0.68))
     style.panel(error, "e", "error of the tip")
     found = 1e3 * metrics["muscle"]["rms_error"]
     style.title(figure, f"The tip follows the plan to {found:.1f} micrometres although gripper and cube are unmodelled")
