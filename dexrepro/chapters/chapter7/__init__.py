@@ -10,6 +10,7 @@ from dexrepro.chapters.chapter7 import (
     reaching_demonstrations,
     reactive_learning,
     style_separation,
+    unseen_conditions,
 )
 from dexrepro.experiment import Experiment
 
@@ -21,6 +22,7 @@ EXPERIMENTS = tuple(
         reactive_learning,
         style_separation,
         fuzzy_generalisation,
+        unseen_conditions,
         impedance_tracking,
         impedance_stability,
         obstacle_contact,

@@ -31,7 +31,8 @@ ARM_BASE = (-0.09, 0.105, 0.10)  # m, from the front left corner of the board
 CUBE = 0.018  # m, edge of the carried cube
 JAWS = tuple(Shape("box", (0.022, 0.004, 0.016), Pose((-0.002, side, 0.0)), DARK) for side in (-0.012, 0.012))
 CAMERA = Camera(target=(0.14, 0.0, -0.045), distance=0.33, yaw=62.0, pitch=-24.0)
-WOOD, RED, GREEN = (0.93, 0.87, 0.72, 1.0), (0.84, 0.37, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
+WOOD, BLUE = (0.93, 0.87, 0.72, 1.0), (0.0, 0.45, 0.70, 1.0)
+RED, GREEN = (0.84, 0.37, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
 
 
 def to_robot(points: Array) -> Array:
@@ -119,10 +120,23 @@ def build(config: Config, start: Array, contacts: bool = False) -> World:
     return world
 
 
-def furnish(world: World, obstacle: Obstacle) -> None:
+def demonstration_scene(config: Config) -> World:
+    """The arm with a finger handle that a person moves past the tall stack at the far place."""
+    handle = replace(gripper(), name="handle", shapes=(Shape("cylinder", (0.012, 0.01), colour=DARK),))
+    world = World(gravity=(0.0, 0.0, 0.0))
+    world.add_arm("arm", pen_arm(handle), joint_angles(to_robot(np.array([*config.scene.start, 0.0]))))
+    furnish(world, Obstacle(config.scene.far, config.scene.tall, config.scene.cube), cube=False)
+    for name, place in (("start", config.scene.start), ("goal", config.scene.goal)):
+        x, y, _ = to_robot(np.array([*place, 0.0]))
+        world.add_body(name, [Shape("cylinder", (0.006, 0.001), colour=BLUE)], (x, y, -0.1095), collides=False)
+    return world
+
+
+def furnish(world: World, obstacle: Obstacle, cube: bool = True) -> None:
     """Board, stack and carried cube, for pictures; the board lies a tool's radius below the points of the paths."""
     world.add_box("board", (*BOARD, 0.004), (0.09 + BOARD[0] / 2, 0.0, -0.112), colour=WOOD, collides=False)
-    world.add_box("cube", (CUBE,) * 3, (0.0, 0.0, 0.0), colour=RED, collides=False)
+    if cube:
+        world.add_box("cube", (CUBE,) * 3, (0.0, 0.0, 0.0), colour=RED, collides=False)
     add_stack(world, obstacle, collides=False)
 
 
@@ -133,10 +147,12 @@ def add_stack(world: World, obstacle: Obstacle, **contact: Any) -> None:
     world.add_box("stack", (side, side, height), (x, y, -0.11 + height / 2), colour=GREEN, **contact)
 
 
-def photographs(world: World, positions: dict[str, Array], cube: dict[str, Array]) -> dict[str, NDArray[np.uint8]]:
-    """Pictures with the arm at joint angles and the cube at points [m] of the robot's frame, by name."""
+def photographs(
+    world: World, positions: dict[str, Array], cube: dict[str, Array] | None = None
+) -> dict[str, NDArray[np.uint8]]:
+    """Pictures with the arm at joint angles and, if there is one, the cube at points [m] of the robot's frame, by name."""
     return {
-        name: world.render({"arm": angles}, {"cube": cube[name]}, CAMERA, (420, 320))
+        name: world.render({"arm": angles}, {"cube": cube[name]} if cube else None, CAMERA, (420, 320))
         for name, angles in positions.items()
     }
 

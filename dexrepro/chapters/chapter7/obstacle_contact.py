@@ -117,8 +117,8 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
         bars.bar(places, values, width, color=colour, label=NAMES[name])
         bars.plot(places, estimated, ".", color="k", markersize=3)
     bars.set(xticks=range(3), xticklabels=["before", "behind", "at rest"], ylabel="Deviation [mm]")
-    bars.set_ylim(top=1.5 * bars.get_ylim()[1])
-    bars.legend(fontsize=6, loc="upper right", ncols=2, columnspacing=0.8, handlelength=1.0)
+    bars.set_ylim(top=2.0 * bars.get_ylim()[1])
+    bars.legend(fontsize=6, loc="upper right", handlelength=1.0, borderpad=0.0)
     for letter, panel, text in zip("abc", (contact, push, bars), ("contact with the stack", "push of 0.5 N", "pushes")):
         style.panel(panel, letter, text)
     style.title(figure, "Estimation hides the impedance: without it, muscle-like impedance is soft far and stiff near")

@@ -8,10 +8,19 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from dexrepro.chapters.chapter7 import skills
+from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 
 FIGURES = {
+    "7.4": Figure(
+        "The simulated platform: desktop arm with finger handle, board of 21 x 13 cm, four cubes of 2 cm as obstacle, "
+        "start and goal (blue). The book shows a photograph of a joystick.",
+        "A small arm over a board with a stack of cubes.",
+    ),
+    "7.5": Figure(
+        "A simulated demonstration with the tall obstacle at the far place: the arm is led over it.",
+        "Four pictures of the arm passing over the stack.",
+    ),
     "7.6": Figure(
         "Simulated demonstrations on the board. (a) Plan view and height of ordinary reaches (grey) and of the "
         "movement primitive learned from them (blue); red: learned with the printed sign of D v. (b) Muscle stiffness "
@@ -38,7 +47,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     mean = stiffness.mean(axis=0)[:, None]
     target = level.target(mean, mean[-1], config.dmp.stiffness_cutoff, "even")
     forcing = level.kernels.features(level.phases) @ level.fit(target)
-    return Recording(
+    recording = Recording(
         series={
             "time": learned.primitive.time,
             "ordinary": by_sample(ordinary),
@@ -50,6 +59,24 @@ def simulate(config: Config, rng: Any) -> Recording:
         },
         steps=len(learned.primitive.time),
     )
+    if config.pictures:
+        recording.images = photographs(config, reactions)
+    return recording
+
+
+def scene(config: Config) -> Any:
+    return desk.demonstration_scene(config)
+
+
+def photographs(config: Config, reactions: np.ndarray) -> dict[str, Any]:
+    """The platform and four instants of a demonstration with the tall, far obstacle, forward."""
+    number = [c.labels for c in skills.conditions(config)].index(("far", "tall", "forward"))
+    path = reactions[number, 0]
+    passage = skills.reach(config).moment(config.scene.far)
+    instants = {"platform": 0.0, "a": 0.0, "b": 0.25, "c": passage, "d": 1.0}
+    angles = {name: desk.joint_angles(desk.to_robot(path[round(u * (len(path) - 1))])) for name, u in instants.items()}
+    with scene(config) as world:
+        return desk.photographs(world, angles)
 
 
 def by_sample(data: np.ndarray) -> np.ndarray:
@@ -124,7 +151,27 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     if "corrected" not in recordings:
         return {}
     config = config.cases.corrected
-    return {"7.6": draw_paths(recordings, metrics, config), "7.7": draw_stiffness(recordings["corrected"], config)}
+    figures = {"7.6": draw_paths(recordings, metrics, config), "7.7": draw_stiffness(recordings["corrected"], config)}
+    if recordings["corrected"].images:
+        figures |= draw_pictures(recordings["corrected"].images)
+    return figures
+
+
+def draw_pictures(images: Mapping[str, Any]) -> dict[str, Any]:
+    from dexrepro.report import style
+
+    platform, axes = style.subplots(width=style.ONE_COLUMN, height=2.5)
+    axes.imshow(images["platform"])
+    axes.axis("off")
+    style.title(platform, "Arm, board, obstacle, start and goal (simulated)")
+    figure, panels = style.subplots(1, 4, height=1.7)
+    words = ("start", "move away", "cross over", "reach the target")
+    for letter, word, panel in zip("abcd", words, panels):
+        panel.imshow(images[letter])
+        panel.axis("off")
+        style.panel(panel, letter, word)
+    style.title(figure, "The person leads the arm over the tall obstacle (simulated)")
+    return {"7.4": platform, "7.5": figure}
 
 
 def draw_paths(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> Any:
