@@ -29,6 +29,7 @@ Array = NDArray[np.float64]
 BOARD = (0.13, 0.21)  # m, depth and width; printed in Sect. 7.4
 ARM_BASE = (-0.09, 0.105, 0.10)  # m, from the front left corner of the board
 CUBE = 0.018  # m, edge of the carried cube
+WIDE = Camera(target=(0.14, 0.0, -0.02), distance=0.42, yaw=62.0, pitch=-20.0)
 JAWS = tuple(Shape("box", (0.022, 0.004, 0.016), Pose((-0.002, side, 0.0)), DARK) for side in (-0.012, 0.012))
 CAMERA = Camera(target=(0.14, 0.0, -0.045), distance=0.33, yaw=62.0, pitch=-24.0)
 WOOD, BLUE = (0.93, 0.87, 0.72, 1.0), (0.0, 0.45, 0.70, 1.0)
@@ -148,11 +149,11 @@ def add_stack(world: World, obstacle: Obstacle, **contact: Any) -> None:
 
 
 def photographs(
-    world: World, positions: dict[str, Array], cube: dict[str, Array] | None = None
+    world: World, positions: dict[str, Array], cube: dict[str, Array] | None = None, camera: Camera = CAMERA
 ) -> dict[str, NDArray[np.uint8]]:
     """Pictures with the arm at joint angles and, if there is one, the cube at points [m] of the robot's frame, by name."""
     return {
-        name: world.render({"arm": angles}, {"cube": cube[name]} if cube else None, CAMERA, (420, 320))
+        name: world.render({"arm": angles}, {"cube": cube[name]} if cube else None, camera, (420, 320))
         for name, angles in positions.items()
     }
 

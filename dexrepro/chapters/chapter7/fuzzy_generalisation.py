@@ -192,7 +192,8 @@ def draw_stiffness(panel: Any, recording: Recording) -> None:
     panel.legend(loc="upper left")
 
 
-CLEAR = {"clearance_three": "three directions pass", "clearance_chosen": "left-forward passes"}
+CLEAR = {"clearance_three": "three directions pass (C7.19)", "clearance_chosen": "left-forward passes (C7.21)",
+         "clearance_between": "every direction in between passes (C7.21b)"}  # fmt: skip
 
 
 def tabulate(

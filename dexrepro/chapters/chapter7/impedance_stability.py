@@ -23,7 +23,7 @@ FIGURES = {
         "The arm chatters just where the sampled loop is predicted to become unstable, at three times the printed gain.",
     ),
 }
-TABLES = {"T7.B": "Stability against the impedance gain, predicted and measured"}
+TABLES = {"T7.B": "Stability against gain, period and model, predicted and measured"}
 RATE = 1000.0
 CHATTER = 1.0  # N m of torque travel a joint; smooth runs have 0.15
 
@@ -81,12 +81,18 @@ def lyapunov_metrics(recording: Recording, config: Config) -> Metrics:
 def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
     """Largest stable and smallest unstable gain k_s, measured and predicted."""
     rows = gains(metrics, config)
-    return {
-        "measured_stable": max((gain for gain, m in rows if m["stable"]), default=None),
-        "measured_unstable": min((gain for gain, m in rows if not m["stable"]), default=None),
-        "predicted_stable": max((gain for gain, m in rows if (m["predicted_radius"] or 9) < 1), default=None),
-        "predicted_unstable": min((gain for gain, m in rows if (m["predicted_radius"] or 9) >= 1), default=None),
-    }
+    result: Metrics = {}
+    for name, stable in (
+        ("measured", [bool(m["stable"]) for _, m in rows]),
+        ("predicted", [(m["predicted_radius"] or 0.0) < 1 for _, m in rows]),
+    ):
+        result[f"{name}_stable"] = max((gain for (gain, _), good in zip(rows, stable) if good), default=None)
+        result[f"{name}_unstable"] = min((gain for (gain, _), good in zip(rows, stable) if not good), default=None)
+    limits = list(result.values())
+    if None not in limits:
+        low, high, predicted_low, predicted_high = limits
+        result["limit_ratio"] = (low + high) / (predicted_low + predicted_high)  # type: ignore[operator]
+    return result
 
 
 def gains(metrics: Mapping[str, Metrics], config: Config) -> list[tuple[float, Metrics]]:

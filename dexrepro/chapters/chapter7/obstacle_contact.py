@@ -76,12 +76,22 @@ def measure(recording: Recording, config: Config) -> Metrics:
         **deviation,
         "static_deviation": last,
         "predicted_deviation": float(recording["predicted"][0]),
+        "compliance_ratio": last / float(recording["predicted"][0]),
         "contact_peak": float(force.max()),
         "contact_impulse": float(force.sum() * config.control_period),
         "contact_time": float(touching.sum() * config.control_period),
         "rms_error": float(np.sqrt(np.mean(desk.tip_error(recording) ** 2))),
         "largest_torque": float(np.abs(recording["arm.torque"]).max()),
     }
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """Relative spread of the peak contact force over the impedances, with and without estimation."""
+    peaks = {
+        "estimated": [m["contact_peak"] or 0.0 for case, m in metrics.items() if not case.endswith("_plain")],
+        "plain": [m["contact_peak"] or 0.0 for case, m in metrics.items() if case.endswith("_plain")],
+    }
+    return {f"{name}_spread": float(np.ptp(values) / np.mean(values)) for name, values in peaks.items() if values}
 
 
 NAMES = {"muscle": "muscle", "low": "constant, smallest", "mean": "constant, mean", "high": "constant, largest"}
@@ -141,5 +151,6 @@ def tabulate(
             "RMS error of the run [mm]": values["rms_error"],
         }
         for case, values in metrics.items()
+        if case in config.cases
     ]
     return {"T7.D": pd.DataFrame(rows)}

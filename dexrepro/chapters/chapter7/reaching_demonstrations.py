@@ -76,7 +76,7 @@ def photographs(config: Config, reactions: np.ndarray) -> dict[str, Any]:
     instants = {"platform": 0.0, "a": 0.0, "b": 0.25, "c": passage, "d": 1.0}
     angles = {name: desk.joint_angles(desk.to_robot(path[round(u * (len(path) - 1))])) for name, u in instants.items()}
     with scene(config) as world:
-        return desk.photographs(world, angles)
+        return desk.photographs(world, angles, camera=desk.WIDE)
 
 
 def by_sample(data: np.ndarray) -> np.ndarray:
@@ -163,7 +163,7 @@ def draw_pictures(images: Mapping[str, Any]) -> dict[str, Any]:
     platform, axes = style.subplots(width=style.ONE_COLUMN, height=2.5)
     axes.imshow(images["platform"])
     axes.axis("off")
-    style.title(platform, "Arm, board, obstacle, start and goal (simulated)")
+    style.title(platform, "Arm, board and obstacle (simulated)")
     figure, panels = style.subplots(1, 4, height=1.7)
     words = ("start", "move away", "cross over", "reach the target")
     for letter, word, panel in zip("abcd", words, panels):

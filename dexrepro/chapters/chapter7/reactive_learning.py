@@ -109,6 +109,24 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "plain_refit": float(baseline["plain primitive fitted again"]),
         "printed_difference": float(baseline["printed sign of D(v^N - v)"]),
         "ordinary_change": ordinary_change(recording, config),
+        **normalisation(config),
+    }
+
+
+def normalisation(config: Config) -> Metrics:
+    """Range of Gamma over the movement and the draws, and the share of draws in which tanh makes it change its sign."""
+    primitive = skills.Primitive(config, config.dmp.kernels)
+    gammas, crossings = [], []
+    for draw in range(config.draws):
+        features = skills.enhancement(config, primitive.kernels, draw).first(5 * config.enhancement.nodes)
+        gammas.append(1 / features.blocks(primitive.phases).share)
+        activations = primitive.kernels.activations(primitive.phases)
+        odd = np.tanh(activations @ features.input_weights + features.biases).sum(axis=1)
+        crossings.append((activations.sum(axis=1) + odd).min() < 0)
+    return {
+        "gamma_lowest": float(np.min(gammas)),
+        "gamma_highest": float(np.max(gammas)),
+        "tanh_crossings": float(np.mean(crossings)),
     }
 
 
