@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from dexrepro.physics.loading import load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import PlanarChain, forward
+from dexrepro.robots.kinematics import PlanarTip, forward, jacobian
 
 
 class Point:
@@ -81,9 +81,12 @@ class Sense:
 
     @property
     def tip_velocity(self) -> NDArray[np.float64]:
-        """Velocity of the end point, shape (3,), world frame [m/s], from exact joint rates."""
-        self._plant.locate()
-        return np.array((self._plant.vx, self._plant.vy, self._plant.vz))
+        """Velocity of the end point, shape (3,), world frame [m/s], from the measured joint angles and rates."""
+        plant = self._plant
+        if plant.joint_channel is None:
+            plant.locate()
+            return np.array((plant.vx, plant.vy, plant.vz))
+        return jacobian(plant.arm, self.position)[:3] @ self.velocity
 
 
 class SimulatedArm(Point):
@@ -111,7 +114,7 @@ class SimulatedArm(Point):
         self.force_channel: ForceChannel | None = None
         self.joint_channel: JointChannel | None = None
         self.end = EndPoint(client, self.body, arm)
-        self._planar = PlanarChain(arm) if arm.is_planar else None
+        self._planar = PlanarTip(arm) if arm.is_planar else None
         self._levers: list[tuple[float, float]] = []
         self.z = self._planar.height if self._planar else 0.0
         self.load = self._zeros
@@ -119,7 +122,6 @@ class SimulatedArm(Point):
         self.dq: list[float] = []
         self.torque: Any = self._zeros
         self.fx = self.fy = self.fz = 0.0
-        self._unsensed = (0.0, 0.0, 0.0)
         self._located = False
         self.reset(position)
         self.sense = Sense(self)
@@ -132,7 +134,8 @@ class SimulatedArm(Point):
         self.read()
 
     def prepare(self, period: float) -> None:
-        """Set up the sensors for a run with a control period [s]."""
+        """Set up the sensors for a run with a control period [s], and let go of any torque of a run before."""
+        self.torque = self._zeros
         sensor = self._sensor
         self.force_channel = None if sensor.exact_force else ForceChannel(sensor, period, self._rng)
         self.joint_channel = None if sensor.exact_joints else JointChannel(sensor, period, self._rng)
@@ -144,7 +147,6 @@ class SimulatedArm(Point):
         self.dq = [state[1] for state in states]
         self._located = False
         self.fx = self.fy = self.fz = 0.0
-        self._unsensed = (0.0, 0.0, 0.0)
         self.load = self._zeros
         if self.feels_contact:
             self._feel()
@@ -157,8 +159,11 @@ class SimulatedArm(Point):
         if self._planar is not None:
             self._levers = levers = self._planar.levers(self.q)
             self.x, self.y = self._planar.base[0] + levers[0][0], self._planar.base[1] + levers[0][1]
-            self.vx = -sum(rate * y for rate, (_, y) in zip(self.dq, levers))
-            self.vy = sum(rate * x for rate, (x, _) in zip(self.dq, levers))
+            vx = vy = 0.0
+            for rate, (x, y) in zip(self.dq, levers):
+                vx -= rate * y
+                vy += rate * x
+            self.vx, self.vy = vx, vy
             return
         state = bullet.getLinkState(self.body, self.end.link, 1, 1, physicsClientId=self.client)
         (cx, cy, cz), (rx, ry, rz) = state[0], _rotated(state[1], self.end.from_com)
@@ -228,18 +233,21 @@ class SimulatedArm(Point):
         """
         body, client = self.body, self.client
         damping = np.asarray(damping, dtype=float)
-        matrix = np.diag(damping) if damping.ndim == 1 else damping
+        multiply = np.multiply if damping.ndim == 1 else np.matmul
         rate = np.array(self.dq)
         mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client))
         bias = np.array(bullet.calculateInverseDynamics(body, self.q, self.dq, self._zeros, physicsClientId=client))
-        rest = torque + self.load - bias - matrix @ rate
+        rest = torque + self.load - bias - multiply(damping, rate)
         if self._planar is None and (self.fx or self.fy or self.fz):
             linear, _ = bullet.calculateJacobian(
                 body, self.end.link, self.end.for_jacobian, self.q, self.dq, self._zeros, physicsClientId=client
             )
             rest += np.array((self.fx, self.fy, self.fz)) @ np.array(linear)
-        acceleration = np.linalg.solve(mass + step * matrix, rest)
-        return torque - matrix @ (rate + step * acceleration)
+        if damping.ndim == 1:
+            mass.flat[:: self.dof + 1] += step * damping
+        else:
+            mass += step * damping
+        return torque - multiply(damping, rate + step * np.linalg.solve(mass, rest))
 
     def _act(self, fx: float, fy: float, fz: float) -> None:
         self.locate()

@@ -16,7 +16,7 @@ from dexrepro.physics.loading import connect, undamped
 from dexrepro.physics.plant import Controller, Point, RigidBody, SimulatedArm, Touch, touches
 from dexrepro.physics.rendering import Camera, photograph
 from dexrepro.physics.sensor import Sensor
-from dexrepro.robots.arm import GREY, Arm, Colour, Shape
+from dexrepro.robots.arm import GREY, Arm, Colour, Pose, Shape
 
 Vector = Sequence[float]
 SHAPES = {"box": bullet.GEOM_BOX, "sphere": bullet.GEOM_SPHERE, "cylinder": bullet.GEOM_CYLINDER,
@@ -141,6 +141,26 @@ class World:
     ) -> RigidBody:
         """A sphere of a radius [m], centred at a position [m]; options as for add_body."""
         return self.add_body(name, [Shape("sphere", (radius,), colour=colour)], position, mass=mass, **options)
+
+    def add_opening(
+        self,
+        name: str,
+        size: tuple[float, float],
+        position: Vector,
+        rim: float = 0.05,
+        depth: float = 0.01,
+        colour: Colour = GREY,
+        **options: Any,
+    ) -> RigidBody:
+        """A static frame around a rectangular hole of a size (x, y) [m] in the plane z of its own frame.
+
+        rim: width of the frame around the hole [m]; depth: its thickness [m]; options as for add_body (rpy turns it).
+        """
+        x, y = size
+        beams = [((x + rim) / 2 * side, 0.0, 0.0, rim, y) for side in (-1, 1)]
+        beams += [(0.0, (y + rim) / 2 * side, 0.0, x + 2 * rim, rim) for side in (-1, 1)]
+        shapes = [Shape("box", (long, wide, depth), Pose((a, b, c)), colour) for a, b, c, long, wide in beams]
+        return self.add_body(name, shapes, position, **options)
 
     def hang(
         self,
@@ -278,6 +298,17 @@ class World:
     def _touches(self, first: str, second: str | None) -> list[Touch]:
         found = touches(self.client, self._body(first))
         return found if second is None else [touch for touch in found if touch.other == self._body(second)]
+
+    def snapshot(
+        self, recording: Recording, time: float, camera: Camera = Camera(), size: tuple[int, int] = (640, 480)
+    ) -> NDArray[np.uint8]:
+        """Picture (height, width, 3) of the sample of a recording that is nearest to a time [s]."""
+        index = int(np.abs(recording.time - time).argmin())
+        positions = {
+            name: recording[f"{name}.position"][index] for name in self.arms if f"{name}.position" in recording
+        }
+        poses = {name: recording[f"{name}.pose"][index] for name in self.bodies if f"{name}.pose" in recording}
+        return self.render(positions, poses, camera, size)
 
     def _body(self, name: str) -> int:
         return self.bodies[name].body if name in self.bodies else self.arm(name).body

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import PlanarChain, forward, jacobian, rotation_error
+from dexrepro.robots.kinematics import PlanarTip, forward, jacobian, rotation_error
 
 Array = NDArray[np.float64]
 Place = Sequence[float] | Array
@@ -59,7 +59,7 @@ class InverseKinematics:
         self.gain, self.period, self.damping, self.rest_gain = gain, period, damping, rest_gain
         self.rest = None if rest is None else np.asarray(rest, dtype=float)
         self._kinematics = kinematics or _Description(arm)
-        self._planar = PlanarChain(arm) if arm.is_planar and task == "position" else None
+        self._planar = PlanarTip(arm) if arm.is_planar and task == "position" else None
         self._limited = bool(np.isfinite([arm.lower, arm.upper, arm.speed]).any())
         self.position = np.zeros(arm.dof)
         self.velocity = np.zeros(arm.dof)
@@ -120,6 +120,9 @@ class InverseKinematics:
         return rows @ full, error, rows
 
     def _rates(self, jacobian: Array, rate: Array, pull: Array | None) -> Array:
+        """J^+ rate + (I - J^+ J) pull, written as pull + J^+ (rate - J pull)."""
+        if pull is not None:
+            rate = rate - jacobian @ pull
         square = jacobian @ jacobian.T
         if len(rate) == 2:
             (a, b), (_, c) = square.tolist()
@@ -128,33 +131,29 @@ class InverseKinematics:
             scale = 1.0 / (a * c - b * b)
             result: Array = jacobian.T @ np.array((scale * (c * u - b * v), scale * (a * v - b * u)))
         else:
-            square[np.diag_indices_from(square)] += self.damping**2
+            square.flat[:: len(rate) + 1] += self.damping**2
             result = jacobian.T @ np.linalg.solve(square, rate)
-        if pull is not None:
-            square = jacobian @ jacobian.T + self.damping**2 * np.eye(len(rate))
-            result = result + pull - jacobian.T @ np.linalg.solve(square, jacobian @ pull)
-        return result
+        return result if pull is None else result + pull
 
     def _within_limits(self, jacobian: Array, rate: Array, pull: Array | None) -> Array:
         """Rates whose step stays within position and speed limits; blocked joints are taken out one after another."""
-        arm, free = self.arm, np.ones(self.arm.dof, dtype=bool)
+        arm, result = self.arm, self._rates(jacobian, rate, pull)
         low = np.maximum((arm.lower - self.position) / self.period, -arm.speed)
         high = np.minimum((arm.upper - self.position) / self.period, arm.speed)
+        free = np.ones(arm.dof, dtype=bool)
         fixed = np.zeros(arm.dof)
-        for _ in range(arm.dof):
-            result = fixed.copy()
-            part = None if pull is None else pull[free]
-            result[free] = self._rates(jacobian[:, free], rate - jacobian[:, ~free] @ fixed[~free], part)
+        while True:
             excess = np.maximum(result - high, low - result)
             excess[~free] = 0.0
-            worst = int(np.argmax(excess))
+            worst = int(excess.argmax())
             if excess[worst] <= 1e-12:
-                break
+                return np.minimum(np.maximum(result, low), high)
             free[worst] = False
             fixed[worst] = high[worst] if result[worst] > high[worst] else low[worst]
-            if not free.any():
-                return fixed
-        return np.clip(result, low, high)
+            result = fixed.copy()
+            if free.any():
+                part = None if pull is None else pull[free]
+                result[free] = self._rates(jacobian[:, free], rate - jacobian[:, ~free] @ fixed[~free], part)
 
 
 def solve(

@@ -94,3 +94,32 @@ def test_picture_shows_the_arm_and_leaves_the_simulation_alone():
     assert first.shape == (120, 160, 3)
     assert first.dtype == np.uint8
     assert np.abs(first.astype(int) - other).max() > 50
+
+
+def test_opening_lets_a_thin_body_through_and_counts_what_touches_its_rim():
+    with World() as world:
+        world.add_opening("opening", (0.2, 0.1), (0, 0, 0.3))
+        world.add_sphere("small", 0.03, (0, 0, 0.4), mass=0.1)
+        world.add_sphere("wide", 0.08, (0, 0, 0.6), mass=0.1)
+        run = world.run(0.6, probes={"touching": lambda: len(world.contacts("wide", "opening"))})
+    assert run["small.pose"][-1, 2] < 0.2
+    assert run["wide.pose"][-1, 2] > 0.3
+    assert run["touching"][0] == 0
+    assert run["touching"].max() >= 1
+
+
+def test_any_recorded_instant_can_be_pictured_later():
+    def scene():
+        world = World(gravity=(0, 0, -9.81))
+        world.add_arm("arm", planar([0.5], [1.0]), [0.0])
+        world.add_sphere("ball", 0.1, (0.3, 0.3, 0.3), mass=0.2)
+        return world
+
+    camera = Camera((0.2, 0.2, 0.0), 1.5, 20.0, -40.0)
+    with scene() as world:
+        recording = world.run(0.3, {"arm": lambda s: [0.5]})
+        direct = world.render(camera=camera, size=(80, 60))
+    with scene() as later:
+        first, last = (later.snapshot(recording, time, camera, (80, 60)).astype(int) for time in (0.0, 0.3))
+    assert np.abs(first - last).max() > 50
+    assert np.abs(last - direct).mean() < 1.0

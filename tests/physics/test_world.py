@@ -113,6 +113,17 @@ def test_unilateral_object_never_pulls_and_stiffness_may_vary_in_time():
     np.testing.assert_allclose(run["soft.force"], expected, atol=1e-12)
 
 
+def test_body_between_two_elastic_sides_settles_where_they_balance():
+    with World(gravity=FLAT) as world:
+        world.add_sphere("object", 0.05, (0.2, 0.0, 0.0), mass=0.3, collides=False)
+        for name, place, stiffness in (("left", (0.0, 0.0, 0.0), 100.0), ("right", (0.5, 0.0, 0.0), 50.0)):
+            world.add(Elastic(name, ("object", place), stiffness, rest_length=0.3, damping=5.0))
+        run = world.run(2.0)
+    # 100 (0.3 - x) = 50 (0.3 - (0.5 - x))
+    np.testing.assert_allclose(run["object.pose"][-1, :3], (40 / 150, 0, 0), atol=1e-5)
+    assert run["left.force"][-1] == pytest.approx(run["right.force"][-1], abs=1e-3)
+
+
 def test_push_on_a_link_acts_like_the_jacobian_of_its_point():
     arm, start = baxter("right"), posture("right")
     forces = {}
@@ -329,3 +340,17 @@ def test_tip_velocity_is_the_jacobian_times_the_joint_rates(first, second, rate)
         plant.reset([first, second], [rate, -rate])
         expected = jacobian(arm, [first, second])[:3] @ [rate, -rate]
         np.testing.assert_allclose(plant.sense.tip_velocity, expected, atol=1e-12)
+
+
+def test_torque_of_one_run_is_not_carried_into_the_next():
+    with World(gravity=FLAT) as world:
+        world.add_arm("arm", planar(*BOOK), FOLLOWER)
+        world.run(0.01, {"arm": lambda s: np.ones(3)})
+        assert (world.run(0.01)["arm.torque"] == 0).all()
+
+
+def test_probes_with_memory_are_asked_once_a_sample():
+    asked = []
+    with World() as world:
+        run = world.run(0.01, probes={"count": lambda: asked.append(1) or len(asked)})
+    np.testing.assert_array_equal(run["count"], np.arange(1, 11))

@@ -6,7 +6,7 @@ import pytest
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.robots.arm import Pose, Tool
 from dexrepro.robots.baxter import baxter, extension, palm, posture
-from dexrepro.robots.kinematics import PlanarChain, forward, jacobian, point_jacobian, rotation_error
+from dexrepro.robots.kinematics import PlanarTip, forward, jacobian, point_jacobian, rotation_error
 from dexrepro.robots.pen_arm import gripper, pen, pen_arm
 from dexrepro.robots.planar import planar
 
@@ -98,7 +98,7 @@ def test_point_on_an_inner_link_ignores_the_joints_behind_it():
 @pytest.mark.parametrize("name", [name for name in ARMS if name.startswith("planar")])
 def test_closed_forms_of_planar_arms_equal_the_general_ones(name):
     arm = ARMS[name]
-    chain = PlanarChain(arm)
+    chain = PlanarTip(arm)
     for q in np.random.default_rng(3).uniform(-3, 3, (10, arm.dof)):
         np.testing.assert_allclose(chain.tip(q.tolist()), forward(arm, q)[0][:2], atol=1e-12)
         np.testing.assert_allclose(chain.jacobian(q.tolist()), jacobian(arm, q)[:2], atol=1e-12)
