@@ -1,4 +1,4 @@
-"""Chapter 7: skills that react to obstacles, carried over to new tasks by fuzzy rules, executed with variable impedance."""
+"""Chapter 7: skills that react to obstacles, carried over by fuzzy rules and executed with variable impedance."""
 
 from dexrepro.chapters.chapter7 import (
     claims,

@@ -44,7 +44,8 @@ SKILLS = (
     Claim(
         "C7.06", "7.7", "With a closer obstacle stiffness rises earlier.",
         every(*(
-            less(f"{DEMONSTRATIONS}.half_rise_close_{h}", f"{DEMONSTRATIONS}.half_rise_far_{h}") for h in ("low", "tall")
+            less(f"{DEMONSTRATIONS}.half_rise_close_{h}", f"{DEMONSTRATIONS}.half_rise_far_{h}")
+            for h in ("low", "tall")
         )),
         by_construction=MUSCLE, where="7.4.1",
     ),
@@ -54,7 +55,8 @@ SKILLS = (
     ),
     Claim(
         "C7.08", "7.7", "Stiffness does not have much correspondence with the direction.", None,
-        not_testable="the synthetic muscle has no such dependence; only recordings of people can show it", where="7.4.1",
+        not_testable="the synthetic muscle has no such dependence; only recordings of people can show it",
+        where="7.4.1",
     ),
     Claim(
         "C7.09", "7.7", "The distance changes the speed of the rise only a little (within 25 %).",
@@ -185,8 +187,8 @@ GENERALISATION = (
     Claim(
         "C7.24b", "7.C", "In unseen conditions fuzzy rules are closer than a plane a direction.",
         less(f"{UNSEEN}.main.unseen_fuzzy", f"{UNSEEN}.main.unseen_plane"), source="ours",
-        note="The synthetic person reacts linearly to the height, which favours the plane; it touches the obstacle more "
-        "often and is worse when a condition is left out.",
+        note="The synthetic person reacts linearly to the height, which favours the plane; it touches the obstacle "
+        "more often and is worse when a condition is left out.",
     ),
     Claim(
         "C7.25", "7.C", "The fuzzy system can represent the reactions of its own rules (to 1 mm, for some width).",
@@ -225,7 +227,8 @@ CONTROL = (
         "C7.29", "7.B", "(7.40) ensures stability where k_s is too small.",
         less(f"{TRACKING}.jumps_robust.rms_error", f"{TRACKING}.jumps_no_gain.rms_error", 0.1),
         printed=less(f"{TRACKING}.jumps_robust_printed.rms_error", f"{TRACKING}.jumps_no_gain.rms_error", 0.1),
-        where="7.3.3", note="Force jumps below eps. With Gamma just above alpha and a boundary layer; as printed it chatters.",
+        where="7.3.3",
+        note="Force jumps below eps. With Gamma just above alpha and a boundary layer; as printed it chatters.",
     ),
     Claim(
         "C7.29b", "7.B", "(7.40) ensures stability where k_s is too large.",
@@ -239,9 +242,9 @@ CONTROL = (
         note="At every step down to a ten-thousandth; below that it is a noise floor.",
     ),
     Claim(
-        "C7.31", "7.D", "Variable impedance gives in softly to a constant contact force (by more than 0.1 mm at 0.5 N).",
+        "C7.31", "7.D", "Variable impedance gives in softly to a constant force (by more than 0.1 mm at 0.5 N).",
         greater(f"{CONTACT}.muscle.static_deviation", 0.1), source="ours",
-        note="A quotation that motivates the design. The estimation cancels a constant force; K sets the recovery alone.",
+        note="A quotation that motivates the design. The estimation cancels a constant force.",
     ),
     Claim(
         "C7.31b", "7.D", "Without estimation it gives in by J (K k)^-1 J' F.",
@@ -261,12 +264,12 @@ CONTROL = (
         source="ours",
     ),
     Claim(
-        "C7.32c", "7.D", "Muscle-like impedance lowers the force of an unexpected contact against its mean as a constant.",
+        "C7.32c", "7.D", "Muscle-like impedance lowers the force of an unexpected contact against a constant one.",
         less(f"{CONTACT}.muscle_plain.contact_peak", f"{CONTACT}.mean_plain.contact_peak"), source="ours",
         note="Without estimation. It stiffens where the obstacle is, so that it pushes harder there.",
     ),
     Claim(
-        "C7.32d", "7.D", "With estimation the force of an unexpected contact depends on the impedance (by more than 5 %).",
+        "C7.32d", "7.D", "With estimation the force of an unexpected contact depends on the impedance (by 5 %).",
         greater(f"{CONTACT}.estimated_spread", 0.05), source="ours",
         note="The arm follows its plan into the soft obstacle, whatever K is.",
     ),

@@ -151,7 +151,7 @@ def add_stack(world: World, obstacle: Obstacle, **contact: Any) -> None:
 def photographs(
     world: World, positions: dict[str, Array], cube: dict[str, Array] | None = None, camera: Camera = CAMERA
 ) -> dict[str, NDArray[np.uint8]]:
-    """Pictures with the arm at joint angles and, if there is one, the cube at points [m] of the robot's frame, by name."""
+    """Pictures, by name, with the arm at joint angles and the cube, if any, at points [m] of the robot's frame."""
     return {
         name: world.render({"arm": angles}, {"cube": cube[name]} if cube else None, camera, (420, 320))
         for name, angles in positions.items()

@@ -11,8 +11,8 @@ TRACKING, STABILITY = "impedance_tracking", "impedance_stability"
 ERRATA = (
     Erratum(
         "E7.01", "(7.1), (7.38), (7.42), (7.43)", "error",
-        "J F_e: a force on the tip loads the joints through the transposed Jacobian; for a square J the dimensions do not "
-        "show it.",
+        "J F_e: a force on the tip loads the joints through the transposed Jacobian; for a square J the dimensions "
+        "do not show it.",
         "J^T F_e.",
     ),
     Erratum("E7.02", "Property 7.1", "slip", "M - 2 C is called skew-symmetric; (7.43) has dM/dt.", "dM/dt - 2 C."),
@@ -43,22 +43,22 @@ ERRATA = (
     ),
     Erratum(
         "E7.08", "Remark 7.2 with (7.9)", "reading",
-        "A new group changes Gamma(s) and with it every old column of Xi^A, so that (7.9), which appends columns, does not "
-        "update theta^N; the text never says that it does, and (7.24) from scratch is its procedure.",
+        "A new group changes Gamma(s) and with it every old column of Xi^A, so that (7.9), which appends columns, "
+        "does not update theta^N; the text never says that it does, and (7.24) from scratch is its procedure.",
         "Fit again at every stage.",
     ),
     Erratum(
         "E7.09", "(7.21)-(7.23)", "error",
-        "- D v: solving (7.3) for f gives + D v. Printed three times. In (7.23) alone the learned reaction is worse than "
-        "none.",
+        "- D v: solving (7.3) for f gives + D v. Printed three times. In (7.23) alone the learned reaction is worse "
+        "than none.",
         "+ D v.", switch="shared.dmp.target_sign=printed",
         evidence=(f"{DEMONSTRATIONS}.corrected.ordinary_rmse", f"{DEMONSTRATIONS}.printed_sign.ordinary_rmse",
                   f"{LEARNING}.frozen.no_reaction", f"{LEARNING}.frozen.printed_difference"),
     ),
     Erratum(
         "E7.10", "(7.3), (7.21), (7.36)", "reading",
-        "The factor g - x0 of each coordinate vanishes where start and goal agree (heights, stiffness) and turns no path: "
-        "the known limitation of this form of the primitive.",
+        "The factor g - x0 of each coordinate vanishes where start and goal agree (heights, stiffness) and turns no "
+        "path: the known limitation of this form of the primitive.",
         "Carry the forcing over by a matrix in the frame of the path.",
         switch=f"{FUZZY}.task.scaling=printed_per_axis",
         evidence=(f"{FUZZY}.main.clearance_three", f"{FUZZY}.printed_per_axis.clearance_three"),
@@ -68,7 +68,10 @@ ERRATA = (
         "k-means is no supervised method; the sum over demonstrations runs to n, the number of kernels.",
         "(Weighted) least squares over all demonstrations.",
     ),
-    Erratum("E7.12", "(7.15)", "slip", "eta_{k-n} = 0 for k - n < 0 leaves k = n out; harmless, its factor is 0.", "k <= n."),
+    Erratum(
+        "E7.12", "(7.15)", "slip", "eta_{k-n} = 0 for k - n < 0 leaves k = n out; harmless, its factor is 0.",
+        "k <= n.",
+    ),
     Erratum(
         "E7.13", "(7.26)-(7.28)", "reading",
         "lambda_k reads as a number or as a row of style parameters. With styles as rows the shapes conform and the "
@@ -90,13 +93,14 @@ ERRATA = (
     ),
     Erratum(
         "E7.17", "(7.33), text", "reading",
-        "T, the 'sampling time interval', is the duration of the sampled motion; 'start and end as G and X_0' is swapped.",
+        "T, the 'sampling time interval', is the duration of the sampled motion; 'start and end as G and X_0' is "
+        "swapped.",
         "Start X_0, end G.",
     ),
     Erratum(
         "E7.18", "(7.38), (7.39) second line", "error",
-        "tau_hat is subtracted, and its second line is minus what acted plus K_imp r: what acted comes out right, K_imp r "
-        "with the wrong sign. The closed loop M r' + (C - K) r diverges.",
+        "tau_hat is subtracted, and its second line is minus what acted plus K_imp r: what acted comes out right, "
+        "K_imp r with the wrong sign. The closed loop M r' + (C - K) r diverges.",
         "tau = ... + tau_hat with tau_hat = (tau - M q'' - C q' - G)(t - L) + K_imp r.",
         switch=f"{TRACKING}.law.sign=printed",
         evidence=(f"{TRACKING}.muscle.rms_error", f"{TRACKING}.printed.diverged_at",
@@ -111,8 +115,8 @@ ERRATA = (
     ),
     Erratum(
         "E7.20", "(7.40)", "error",
-        "sign(r) Gamma eps / r is infinite at r = 0, so that K r is a relay of Gamma eps (100 N m if eps is in N, which is "
-        "not printed), and r is a vector. Within the torque limit it chatters.",
+        "sign(r) Gamma eps / r is infinite at r = 0, so that K r is a relay of Gamma eps (100 N m if eps is in N, "
+        "which is not printed), and r is a vector. Within the torque limit it chatters.",
         "A joint at a time, with a boundary layer; Gamma just above alpha is enough.",
         switch=f"{TRACKING}.law.impedance={{_target_:dexrepro.control.time_delay_impedance.RobustImpedance,"
         "stiffness_gain:10.0,switching_gain:100.0,force_bound:1.0,boundary_layer:1e-9}",
@@ -126,8 +130,8 @@ ERRATA = (
     Erratum("E7.22", "(7.43)", "slip", "2 alpha eps r lacks a norm.", "2 alpha eps |r|."),
     Erratum(
         "E7.23", "(7.42)-(7.44)", "gap",
-        "The proof is in continuous time with exact M, C, G and has no upper bound on K_imp; the sampled loop is stable "
-        "only for 0 < Mb/M < 2 and K_imp < (4 M - 2 Mb)/L (one axis).",
+        "The proof is in continuous time with exact M, C, G and has no upper bound on K_imp; the sampled loop is "
+        "stable only for 0 < Mb/M < 2 and K_imp < (4 M - 2 Mb)/L (one axis).",
         "Bound k_s by the spectral radius of the sampled loop.",
         evidence=(f"{STABILITY}.measured_stable", f"{STABILITY}.measured_unstable", f"{STABILITY}.predicted_unstable"),
     ),
@@ -142,8 +146,8 @@ ERRATA = (
     ),
     Erratum(
         "E7.27", "7.4", "gap",
-        "Coordinates have no unit and no single one fits: in mm the far obstacle leaves the board or the new end lies on "
-        "an obstacle. Here numbers up to 21 are cm, larger ones mm.",
+        "Coordinates have no unit and no single one fits: in mm the far obstacle leaves the board or the new end "
+        "lies on an obstacle. Here numbers up to 21 are cm, larger ones mm.",
         "State the units.",
     ),
     Erratum(

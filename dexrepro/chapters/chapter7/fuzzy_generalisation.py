@@ -13,11 +13,11 @@ from dexrepro.experiment import Config, Figure, Metrics, Recording
 
 FIGURES = {
     "7.9": Figure(
-        "Generalisation to start (4.6, 0), goal (18, 4) cm and a 4 cm obstacle (simulated). (a) Ordinary skill, old and "
-        "new task; obstacle on the path (full) and where the printed coordinates read in cm put it (dashed); red dotted: "
-        "T X' = V' as printed in (7.33). (b) Three directions, from above and from the side; faint: a 2 cm and an 8 cm "
-        "obstacle. (c) Directions in between, grey, and the left-forward one, with the clearance against the direction. "
-        "(d) Stiffness between those of the demonstrated heights.",
+        "Generalisation to start (4.6, 0), goal (18, 4) cm and a 4 cm obstacle (simulated). (a) Ordinary skill, old "
+        "and new task; obstacle on the path (full) and where the printed coordinates read in cm put it (dashed); red "
+        "dotted: T X' = V' as printed in (7.33). (b) Three directions, from above and from the side; faint: a 2 cm "
+        "and an 8 cm obstacle. (c) Directions in between, grey, and the left-forward one, with the clearance against "
+        "the direction. (d) Stiffness between those of the demonstrated heights.",
         "The three directions pass the new obstacle; half way between left and forward the tool touches it.",
     ),
 }
@@ -85,14 +85,14 @@ def measure(recording: Recording, config: Config) -> Metrics:
         **{
             f"separation_{h:g}": float(np.sqrt(np.mean((lateral[h][1] - lateral[h][2]) ** 2))) for h in heights
         },
-        "between_heights": float(min(betweenness(*(lift[h] for h in heights)), betweenness(*(reached[h] for h in heights)))),
+        "between_heights": min(betweenness(*(found[h] for h in heights)) for found in (lift, reached)),
         "lateral_steps": float(np.diff(-aside).min() / np.ptp(aside)),
         **stiffness_metrics(recording),
     }  # fmt: skip
 
 
 def betweenness(low: np.ndarray, middle: np.ndarray, high: np.ndarray) -> float:
-    """Smallest relative distance of ``middle`` from ``low`` and ``high``; positive if it lies between in every direction."""
+    """Smallest relative distance of ``middle`` from both others; positive if it lies between in every direction."""
     share = (middle - low) / (high - low)
     return float(np.minimum(share, 1 - share).min())
 

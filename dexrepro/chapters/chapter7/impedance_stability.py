@@ -18,9 +18,10 @@ FIGURES = {
     "7.B": Figure(
         "(a) Largest spectral radius of the sampled loop along the path against the gain k_s (line), and what the "
         "simulated arm does with that gain: torque ripple (points, right axis; 0.14 N m is the task itself). Dotted: "
-        "stability limit. (b) V = r' M r after an initial error of 0.2 rad in each joint, torque limit lifted, with and "
-        "without time-delay estimation. Not in the book, whose proof in continuous time has no upper bound.",
-        "The arm chatters just where the sampled loop is predicted to become unstable, at three times the printed gain.",
+        "stability limit. (b) V = r' M r after an initial error of 0.2 rad in each joint, torque limit lifted, with "
+        "and without time-delay estimation. Not in the book, whose proof in continuous time has no upper bound.",
+        "The arm chatters just where the sampled loop is predicted to become unstable, at three times the printed "
+        "gain.",
     ),
 }
 TABLES = {"T7.B": "Stability against gain, period and model, predicted and measured"}
@@ -63,7 +64,7 @@ def radius(recording: Recording, config: Config) -> float:
 
 
 def lyapunov_metrics(recording: Recording, config: Config) -> Metrics:
-    """V = r^T M r with the true inertia, Eq. (7.41): its largest relative rise until it is a ten-thousandth, and when."""
+    """V = r^T M r with the true inertia, Eq. (7.41): largest relative rise until it is a ten-thousandth, and when."""
     model = RigidBodyModel(pen_arm(gripper(config.arm.gripper_mass)))
     early = recording.time < 0.4
     pairs = zip(recording["arm.position"][early], recording["filtered_error"][early])

@@ -16,15 +16,15 @@ from dexrepro.robots.pen_arm import pen_arm
 
 FIGURES = {
     "7.10": Figure(
-        "The simulated arm grasps the cube, carries it past the 4 cm stack and puts it down; rendered from the recorded "
-        "joint angles. The book shows photographs of a joystick with a gripper.",
+        "The simulated arm grasps the cube, carries it past the 4 cm stack and puts it down; rendered from the "
+        "recorded joint angles. The book shows photographs of a joystick with a gripper.",
         "Six pictures of the arm carrying a cube around the green stack.",
     ),
     "7.11": Figure(
-        "(a-c) Joint torques under the corrected law with the printed k_s = 10 and, dashed, the gravity torque that the "
-        "nominal model knows (it knows neither gripper, cube nor friction); the cube is picked up at 0.5 s and put down "
-        "at 6.5 s. (d) Planned and real path of the tip from above and its height; (e) error of the tip with and without "
-        "time-delay estimation, same gains. Simulated; PyBullet, torque control at 1 kHz.",
+        "(a-c) Joint torques under the corrected law with the printed k_s = 10 and, dashed, the gravity torque that "
+        "the nominal model knows (it knows neither gripper, cube nor friction); the cube is picked up at 0.5 s and "
+        "put down at 6.5 s. (d) Planned and real path of the tip from above and its height; (e) error of the tip "
+        "with and without time-delay estimation, same gains. Simulated; PyBullet, torque control at 1 kHz.",
         "With time-delay estimation the tip follows the plan within micrometres although the model lacks the gripper.",
     ),
 }
@@ -36,7 +36,7 @@ scene = desk.scene
 
 
 def simulate(config: Config, rng: Any) -> Recording:
-    task, reference = desk.planned(config)
+    _, reference = desk.planned(config)
     with desk.build(config, reference.tip[0]) as world:
         if config.jump_force:
             world.add(jumps(config))

@@ -1,4 +1,4 @@
-"""The arm meets a stack that is taller than it was told, and is pushed: what a variable impedance changes, and what not."""
+"""The arm meets a stack that is taller than it was told, and is pushed: what variable impedance changes."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from dexrepro.physics.elements import Push
 
 FIGURES = {
     "7.D": Figure(
-        "The arm passes forward over a stack that is taller than planned, so that its end touches the soft top, and is "
-        "pushed sideways with 0.5 N before the obstacle, behind it and at rest (simulated; not in the book). (a) Contact "
-        "force. (b) Sideways deviation caused by the push before the obstacle. (c) Deviation under the three pushes "
-        "without estimation; dots: with it, all below 0.03 mm.",
+        "The arm passes forward over a stack that is taller than planned, so that its end touches the soft top, and "
+        "is pushed sideways with 0.5 N before the obstacle, behind it and at rest (simulated; not in the book). (a) "
+        "Contact force. (b) Sideways deviation caused by the push before the obstacle. (c) Deviation under the three "
+        "pushes without estimation; dots: with it, all below 0.03 mm.",
         "With time-delay estimation neither contact force nor deviation depends on the impedance; without it they do.",
     ),
 }
@@ -104,7 +104,8 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
 
     figure, (contact, push, bars) = style.subplots(1, 3, height=2.7)
     lines = {"muscle": ("book", "muscle"), "low": ("extra1", "constant low"),
-             "muscle_plain": ("rival", "muscle, no estimation"), "low_plain": ("plain", "low, no estimation")}  # fmt: skip
+             "muscle_plain": ("rival", "muscle, no estimation"), 
+             "low_plain": ("plain", "low, no estimation")}  # fmt: skip
     start, end = config.pushes.before
     for case, (line, label) in lines.items():
         recording = recordings[case]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -16,7 +16,7 @@ from dexrepro.report import style
 
 Array = NDArray[np.float64]
 
-DIRECTIONS = {
+DIRECTIONS: dict[str, dict[str, Any]] = {
     "left": {"color": style.EXTRA[0], "linestyle": "-"},
     "forward": {"color": style.EXTRA[1], "linestyle": (0, (5, 1))},
     "right": {"color": style.EXTRA[2], "linestyle": (0, (3, 1, 1, 1))},
@@ -38,7 +38,7 @@ def side(axes: Axes, paths: Array, reach: Reach, **line: Any) -> None:
 
 def footprint(axes: Axes, obstacle: Obstacle, **patch: Any) -> None:
     x, y = np.subtract(obstacle.position, obstacle.side / 2)
-    options = {"facecolor": "#D9D9D9", "edgecolor": "#555555", "linewidth": 0.6, "zorder": 0} | patch
+    options: dict[str, Any] = {"facecolor": "#D9D9D9", "edgecolor": "#555555", "linewidth": 0.6, "zorder": 0} | patch
     axes.add_patch(Rectangle((x, y), obstacle.side, obstacle.side, **options))
 
 
@@ -47,7 +47,7 @@ def profile(axes: Axes, obstacle: Obstacle, reach: Reach, **patch: Any) -> None:
     dx, dy = reach.axes[0, :2]
     half = obstacle.side / 2 * (abs(dx) + abs(dy))
     middle = reach.locate(obstacle.position)[0] * reach.length
-    options = {"facecolor": "#D9D9D9", "edgecolor": "#555555", "linewidth": 0.6, "zorder": 0} | patch
+    options: dict[str, Any] = {"facecolor": "#D9D9D9", "edgecolor": "#555555", "linewidth": 0.6, "zorder": 0} | patch
     axes.add_patch(Rectangle((middle - half, 0), 2 * half, obstacle.height, **options))
 
 

@@ -23,9 +23,10 @@ FIGURES = {
     ),
     "7.6": Figure(
         "Simulated demonstrations on the board. (a) Plan view and height of ordinary reaches (grey) and of the "
-        "movement primitive learned from them (blue); red: learned with the printed sign of D v. (b) Muscle stiffness "
-        "likewise. (c-f) Reactions to a low (2 cm) and a tall (8 cm) obstacle, far and close, in three directions; "
-        "d': distance of forward and right at the obstacle in standard deviations. The book's figure shows recordings of one person with a joystick.",
+        "movement primitive learned from them (blue); red: learned with the printed sign of D v. (b) Muscle "
+        "stiffness likewise. (c-f) Reactions to a low (2 cm) and a tall (8 cm) obstacle, far and close, in three "
+        "directions; d': distance of forward and right at the obstacle in standard deviations. The book's figure "
+        "shows recordings of one person with a joystick.",
         "Ordinary reaches are reproduced to a fraction of a millimetre; forward and right reactions separate for a low "
         "obstacle and overlap for a tall one.",
     ),
@@ -187,11 +188,11 @@ def draw_paths(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], 
     ordinary = paths_of(recording, "ordinary", config)[0]
     pictures.plan(plans[0, 0], ordinary, color="#AAAAAA", linewidth=0.6, linestyle="--")
     pictures.side(sides[0, 0], ordinary, task, color="#AAAAAA", linewidth=0.6, linestyle="--")
-    for case, line in (("corrected", "book"), ("printed_sign", "printed")):
+    for case, kind in (("corrected", "book"), ("printed_sign", "printed")):
         if case in recordings:
-            pictures.plan(plans[0, 0], recordings[case]["learned"], **style.LINES[line])
-            pictures.side(sides[0, 0], recordings[case]["learned"], task, **style.LINES[line])
-            level.plot(recording.time, recordings[case]["learned_stiffness"], **style.LINES[line])
+            pictures.plan(plans[0, 0], recordings[case]["learned"], **style.LINES[kind])
+            pictures.side(sides[0, 0], recordings[case]["learned"], task, **style.LINES[kind])
+            level.plot(recording.time, recordings[case]["learned_stiffness"], **style.LINES[kind])
     sides[0, 0].set_ylim(0, 2)
     style.panel(plans[0, 0], "a", f"ordinary, {10 * metrics['corrected']['ordinary_rmse']:.1f} mm off")
     places = {("far", "low"): (0, 2), ("far", "tall"): (1, 0), ("close", "low"): (1, 1), ("close", "tall"): (1, 2)}

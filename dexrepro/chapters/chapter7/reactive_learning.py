@@ -14,10 +14,10 @@ from dexrepro.primitives.reactive import fit_reaction, ridge_weights
 
 FIGURES = {
     "7.8": Figure(
-        "Reactions to the low, close obstacle learned with 1, 2 and 5 groups of three enhancement nodes, seen from above; "
-        "black dashed: ordinary skill; thin: demonstrations (simulated). Below: error against the mean demonstration "
-        "while groups are added, median and range of ten draws of the random nodes; the old nodes keep their weights "
-        "(blue, as in (7.17)) or are fitted again (orange, the other reading of (7.19)).",
+        "Reactions to the low, close obstacle learned with 1, 2 and 5 groups of three enhancement nodes, seen from "
+        "above; black dashed: ordinary skill; thin: demonstrations (simulated). Below: error against the mean "
+        "demonstration while groups are added, median and range of ten draws of the random nodes; the old nodes keep "
+        "their weights (blue, as in (7.17)) or are fitted again (orange, the other reading of (7.19)).",
         "With one, two and five groups the learned reactions approach the demonstrated ones.",
     ),
 }
@@ -171,11 +171,11 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
         )
     pictures.name_directions(panels[3])
     curve = figure.add_subplot(grid[1, 3:])
-    for name, line in (("frozen", "book"), ("refit", "rival")):
+    for name, kind in (("frozen", "book"), ("refit", "rival")):
         if name in recordings:
             learning = recordings[name].frames["learning"].groupby("groups").rmse
             label = {"frozen": "old weights kept (7.17)", "refit": "all weights free"}[name]
-            curve.plot(learning.median().index, 10 * learning.median(), label=label, marker=".", **style.LINES[line])
+            curve.plot(learning.median().index, 10 * learning.median(), label=label, marker=".", **style.LINES[kind])
             style.band(curve, learning.median().index, 10 * learning.min(), 10 * learning.max())
     curve.axhline(10 * metrics["frozen"]["spread"], **style.LINES["reference"])
     curve.annotate("spread of repetitions", (4.5, 10 * metrics["frozen"]["spread"]), fontsize=6.5, va="bottom")

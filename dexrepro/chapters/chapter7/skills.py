@@ -190,11 +190,9 @@ class Skills:
 
     def perform(self, reactions: ArrayLike = 0.0) -> Array:
         """Movements (..., N, 3) [cm] of the old task with reactions (..., N, 3) in the path's frame added."""
-        return self.primitive.rollout(
-            self.forcing + np.asarray(reactions) @ self.reach.axes if np.ndim(reactions) else self.forcing,
-            self.start,
-            self.goal,
-        )
+        added = np.asarray(reactions, float)
+        forcing = self.forcing + (added @ self.reach.axes if added.ndim else added)
+        return self.primitive.rollout(forcing, self.start, self.goal)
 
 
 def fuzzy_system(config: Config) -> FuzzySystem:
@@ -260,7 +258,9 @@ class NewTask:
     def perform(self, reaction: ArrayLike = 0.0) -> Array:
         """Generalised movements (..., N, 3) [cm], Eq. (7.36)."""
         printed = self.config.task.kinematics == "printed"
-        return self.skills.primitive.rollout(self.forcing + reaction, *self.reach.ends, printed=printed)
+        return self.skills.primitive.rollout(
+            self.forcing + np.asarray(reaction, float), *self.reach.ends, printed=printed
+        )
 
     def clearance(self, paths: Array) -> Array:
         return self.obstacle.clearance(paths, self.config.scene.tool_radius)

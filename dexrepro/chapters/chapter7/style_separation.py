@@ -84,9 +84,9 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
         panel.semilogy(ranks["rank"], 10 * ranks["mean"], marker=".", label=label, **style.LINES[line])
         if name != "non_separable":
             panel.semilogy(ranks["rank"], 10 * ranks["worst"], "o", fillstyle="none", color=style.BOOK, label="worst")
-            for row in ranks.itertuples():
-                if row.collisions:
-                    panel.annotate(f"{row.collisions} touch", (row.rank, 10 * row.worst), xytext=(7, -1),
+            for rank, worst, count in ranks[["rank", "worst", "collisions"]].to_numpy().tolist():
+                if count:
+                    panel.annotate(f"{count:.0f} touch", (rank, 10 * worst), xytext=(7, -1),
                                    textcoords="offset points", fontsize=6.5, va="center")  # fmt: skip
     for letter, panel, text in zip("ab", axes, ("a set of each coordinate", "one set for all coordinates")):
         panel.axhline(

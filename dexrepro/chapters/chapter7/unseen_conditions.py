@@ -14,10 +14,10 @@ from dexrepro.networks.fuzzy import FuzzySystem
 
 FIGURES = {
     "7.C": Figure(
-        "Fuzzy rules against simpler ways to react (simulated; not in the book). (a) Leave one out: RMS error of each of "
-        "the twelve reactions predicted from the other eleven (dots) and mean (bars). (b) 88 unseen conditions (four "
-        "places, five heights, five directions): mean error, and the share of reactions that touch the obstacle; the "
-        "person's own reactions to these conditions touch it in the share drawn as a line.",
+        "Fuzzy rules against simpler ways to react (simulated; not in the book). (a) Leave one out: RMS error of "
+        "each of the twelve reactions predicted from the other eleven (dots) and mean (bars). (b) 88 unseen "
+        "conditions (four places, five heights, five directions): mean error, and the share of reactions that touch "
+        "the obstacle; the person's own reactions to these conditions touch it in the share drawn as a line.",
         "The fuzzy rules are closer than the nearest demonstration in unseen conditions and touch no obstacle.",
     ),
 }
@@ -79,7 +79,7 @@ def unseen(config: Config, learned: skills.Skills, known: list[skills.Condition]
     truth = np.array(
         [someone.ordinary(task) + someone.reaction(task, obstacle, x["direction"]) for x, obstacle in cases]
     )
-    rows: dict[str, Any] = pd.DataFrame([x for x, _ in cases]).to_dict("list")
+    rows: dict[str, Any] = {name: [x[name] for x, _ in cases] for name in cases[0][0]}
     performed = {"person": truth}
     for method, predict in PREDICTORS.items():
         forcing = np.array([predict(x, learned.reactions, known, config) for x, _ in cases])
@@ -133,7 +133,7 @@ def plane(x: dict[str, float], reactions: np.ndarray, known: list[skills.Conditi
 PREDICTORS: dict[str, Predictor] = {
     "fuzzy": fuzzy,
     "nearest": nearest,
-    "nearest_same": lambda *arguments: nearest(*arguments, same_direction=True),
+    "nearest_same": lambda x, reactions, known, config: nearest(x, reactions, known, config, same_direction=True),
     "plane": plane,
     "ordinary": lambda x, reactions, known, config: np.zeros(reactions.shape[1:]),
 }
