@@ -12,7 +12,7 @@ from typing import Any
 import jinja2
 import pandas as pd
 
-from dexrepro import __version__, chapters
+from dexrepro import __version__, chapters, study
 from dexrepro.config import compose_chapter, provenance, resolved_block
 from dexrepro.experiment import (
     AFTER_CORRECTION,
@@ -137,6 +137,10 @@ class _Report:
                 for identifier, title in experiment.tables.items()
                 if (place / "tables" / f"{identifier}.csv").exists()
             ],
+            "animations": [
+                {"name": path.stem, "path": _copied(path, target, f"files/{experiment.name}")}
+                for path in sorted(place.glob("animation/*.gif"))
+            ],
             "files": files,
             "run": run,
             "provenance": (
@@ -200,7 +204,7 @@ class _Report:
             "totals": totals,
             "gallery": [figure for c in book for figure in _in_book_order(c)],
             "errata": errata,
-            "studies": [],
+            "studies": [{"claim": claim, **row} for item in study.stored() for claim, row in item["claims"].items()],
         }
 
     def _provenance(self, book: list[dict[str, Any]]) -> str:
@@ -279,6 +283,11 @@ def _flat(node: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
         else:
             rows.append((f"{prefix}.{key}", value))
     return rows
+
+
+def _copied(source: Path, folder: Path, link: str) -> str:
+    _copy(source, folder / source.name)
+    return f"{link}/{source.name}"
 
 
 def _copy(source: Path, target: Path) -> None:
