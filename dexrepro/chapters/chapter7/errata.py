@@ -51,7 +51,7 @@ ERRATA = (
         "E7.09", "(7.21)-(7.23)", "error",
         "- D v: solving (7.3) for f gives + D v. Printed three times. In (7.23) alone the learned reaction is worse "
         "than none.",
-        "+ D v.", switch="shared.dmp.target_sign=printed",
+        "+ D v.", switch="shared.target_sign=printed",
         evidence=(f"{DEMONSTRATIONS}.corrected.ordinary_rmse", f"{DEMONSTRATIONS}.printed_sign.ordinary_rmse",
                   f"{LEARNING}.frozen.no_reaction", f"{LEARNING}.frozen.printed_difference"),
     ),

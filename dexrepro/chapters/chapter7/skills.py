@@ -115,7 +115,7 @@ class Primitive:
         self.phases = phase(self.time, self.duration, config.dmp.phase_decay)
         self.kernels = GaussianKernels.spaced(kernels, config.dmp.phase_decay, config.dmp.overlap)
         self.system = SpringDamper(config.dmp.stiffness, config.dmp.damping)
-        self.damping_sign = {"corrected": 1.0, "printed": -1.0}[config.dmp.target_sign]
+        self.damping_sign = {"corrected": 1.0, "printed": -1.0}[config.target_sign]
         self.ridge = config.dmp.ridge
 
     def target(self, paths: Array, goal: ArrayLike, cutoff: float, padding: str = "odd") -> Array:
