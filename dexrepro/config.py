@@ -223,12 +223,23 @@ def _assign(node: dict[str, Any], dotted: str, value: Any, where: str) -> None:
 
 
 def _resolve(composed: Mapping[str, Any], experiment: str, block: Mapping[str, Any]) -> dict[str, Any]:
-    names = {key: value for key, value in composed.items() if key != "hydra"}
-    config = OmegaConf.create({**names, experiment: dict(block)})
+    config = OmegaConf.create({**_referred(composed, block), experiment: dict(block)})
     try:
         return OmegaConf.to_container(config[experiment], resolve=True)  # type: ignore[return-value]
     except OmegaConfBaseException as error:
         raise InputError(f"{experiment}: {' '.join(str(error).split())}") from error
+
+
+def _referred(composed: Mapping[str, Any], block: Any) -> dict[str, Any]:
+    """The top-level entries that a block's interpolations lead to; resolving the whole chapter would take long."""
+    found: dict[str, Any] = {}
+    texts = [str(block)]
+    while texts:
+        for name in re.findall(r"\$\{(\w+)", texts.pop()):
+            if name in composed and name not in found:
+                found[name] = composed[name]
+                texts.append(str(composed[name]))
+    return found
 
 
 # ------------------------------------------------------------------------------------------------------- checking

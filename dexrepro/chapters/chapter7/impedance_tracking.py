@@ -81,12 +81,14 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
 
 
 def draw_pictures(recording: Recording) -> Any:
+    from dexrepro.chapters.chapter7 import pictures as views
     from dexrepro.report import style
 
+    images = views.trimmed(recording.images)
     words = {"a": "grasp", "f": "release"}
     figure, axes = style.subplots(2, 3, height=3.6)
     for (letter, instant), panel in zip(PICTURES.items(), axes.flat):
-        panel.imshow(recording.images[letter])
+        panel.imshow(images[letter])
         panel.axis("off")
         style.panel(panel, letter, f"{words.get(letter, 'transport')}, {instant:g} s")
     style.title(figure, "The arm carries the cube past the stack (simulated)")

@@ -159,16 +159,18 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
 
 
 def draw_pictures(images: Mapping[str, Any]) -> dict[str, Any]:
+    from dexrepro.chapters.chapter7 import pictures
     from dexrepro.report import style
 
+    shown = pictures.trimmed({name: image for name, image in images.items() if name != "platform"})
     platform, axes = style.subplots(width=style.ONE_COLUMN, height=2.5)
-    axes.imshow(images["platform"])
+    axes.imshow(pictures.trimmed({"platform": images["platform"]})["platform"])
     axes.axis("off")
     style.title(platform, "Arm, board and obstacle (simulated)")
     figure, panels = style.subplots(1, 4, height=1.7)
     words = ("start", "move away", "cross over", "reach the target")
     for letter, word, panel in zip("abcd", words, panels):
-        panel.imshow(images[letter])
+        panel.imshow(shown[letter])
         panel.axis("off")
         style.panel(panel, letter, word)
     style.title(figure, "The person leads the arm over the tall obstacle (simulated)")

@@ -86,8 +86,8 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
             panel.semilogy(ranks["rank"], 10 * ranks["worst"], "o", fillstyle="none", color=style.BOOK, label="worst")
             for rank, worst, count in ranks[["rank", "worst", "collisions"]].to_numpy().tolist():
                 if count:
-                    panel.annotate(f"{count:.0f} touch", (rank, 10 * worst), xytext=(7, -1),
-                                   textcoords="offset points", fontsize=6.5, va="center")  # fmt: skip
+                    panel.annotate(f"{count:.0f} touch", (rank, 10 * worst), xytext=(0, 5),
+                                   textcoords="offset points", fontsize=6.5, ha="center")  # fmt: skip
     for letter, panel, text in zip("ab", axes, ("a set of each coordinate", "one set for all coordinates")):
         panel.axhline(
             10 * metrics["per_coordinate"]["spread"], label="spread of repetitions", **style.LINES["reference"]
