@@ -40,6 +40,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
     metrics: Metrics = dict(desk.tracking_metrics(recording, config))
     metrics["predicted_radius"] = radius(recording, config)
     metrics["stable"] = int(bool(metrics["finished"]) and (metrics["torque_travel"] or 0.0) < CHATTER)
+    if not metrics["stable"]:  # the size of a limit cycle changes with the last digits
+        metrics["rms_error"] = metrics["largest_error"] = None
     if any(config.initial_error):
         metrics |= lyapunov_metrics(recording, config)
     else:

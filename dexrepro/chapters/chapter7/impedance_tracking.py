@@ -62,13 +62,7 @@ def jumps(config: Config) -> Push:
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
-    metrics: Metrics = dict(desk.tracking_metrics(recording, config))
-    if metrics["finished"]:
-        torque = recording["arm.torque"][recording.between(1.0)]
-        metrics |= {f"torque_range{k + 1}": float(np.ptp(torque[:, k])) for k in range(3)}
-        angles = recording["reference"] - recording["arm.position"]
-        metrics["joint_error"] = float(np.sqrt(np.mean(angles**2)))
-    return metrics
+    return dict(desk.tracking_metrics(recording, config))
 
 
 def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from dexrepro.primitives.reactive import Styles
 FIGURES = {
     "7.A": Figure(
         "Error of the twelve learned reactions against the number of style parameters (simulated; not in the book). "
-        "(a) Style parameters of each coordinate, (b) shared by the three coordinates; open: worst reaction, number: "
+        "(a) Style parameters of each coordinate, (b) shared by the three coordinates; open: worst reaction, red: number of "
         "reactions that touch the obstacle. (c) Singular values of the reactive forcing terms of each coordinate. "
         "Green: demonstrations whose shape differs between directions.",
         "One style parameter a reaction is not enough for two obstacles; two a coordinate are.",
@@ -86,13 +86,19 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
             panel.semilogy(ranks["rank"], 10 * ranks["worst"], "o", fillstyle="none", color=style.BOOK, label="worst")
             for rank, worst, count in ranks[["rank", "worst", "collisions"]].to_numpy().tolist():
                 if count:
-                    panel.annotate(f"{count:.0f} touch", (rank, 10 * worst), xytext=(0, 5),
-                                   textcoords="offset points", fontsize=6.5, ha="center")  # fmt: skip
+                    panel.annotate(f"{count:.0f}", (rank, 10 * worst), xytext=(0, 5), color=style.PRINTED,
+                                   textcoords="offset points", fontsize=7, ha="center")  # fmt: skip
     for letter, panel, text in zip("ab", axes, ("a set of each coordinate", "one set for all coordinates")):
         panel.axhline(
             10 * metrics["per_coordinate"]["spread"], label="spread of repetitions", **style.LINES["reference"]
         )
-        panel.set(xlabel="Style parameters R [-]", ylabel="RMS error [mm]", ylim=(0.1, 300), xticks=range(1, 7))
+        panel.set(
+            xlabel="Style parameters R [-]",
+            ylabel="RMS error [mm]",
+            ylim=(0.1, 300),
+            xlim=(0.6, 6.4),
+            xticks=range(1, 7),
+        )
         style.panel(panel, letter, text)
     axes[0].legend(loc="upper right", fontsize=6.5)
     spectrum = recordings["per_coordinate"].frames["spectrum"]
