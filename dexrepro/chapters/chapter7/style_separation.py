@@ -15,9 +15,9 @@ from dexrepro.primitives.reactive import Styles
 FIGURES = {
     "7.A": Figure(
         "Error of the twelve learned reactions against the number of style parameters (simulated; not in the book). "
-        "(a) Style parameters of each coordinate, (b) shared by the three coordinates; open: worst reaction, red: number of "
-        "reactions that touch the obstacle. (c) Singular values of the reactive forcing terms of each coordinate. "
-        "Green: demonstrations whose shape differs between directions.",
+        "(a) Style parameters of each coordinate, (b) shared by the three coordinates; open: worst reaction, red: "
+        "number of reactions that touch the obstacle. (c) Singular values of the reactive forcing terms of each "
+        "coordinate. Green: demonstrations whose shape differs between directions.",
         "One style parameter a reaction is not enough for two obstacles; two a coordinate are.",
     ),
 }
