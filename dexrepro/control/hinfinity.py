@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigvals, solve_continuous_are
 
+from dexrepro.control.task_space import ArmState, Motion
+
 Array = NDArray[np.float64]
 
 
 class NominalModel(Protocol):
-    """What the law knows of the arm: M(q), C(q, dq) dq + G(q), J(q) and J'(q, dq) dq."""
+    """What the law knows of the arm: M(q), C(q, dq) dq + G(q), and the square Jacobian J(q) of the task."""
 
     def mass_matrix(self, position: Array) -> Array: ...
 
     def bias(self, position: Array, velocity: Array) -> Array: ...
 
     def jacobian(self, position: Array) -> Array: ...
-
-    def drift(self, position: Array, velocity: Array) -> Array: ...
 
 
 def integrator_chain(order: int) -> tuple[Array, Array]:
@@ -61,3 +61,37 @@ def achieved_norm(gain: Array, weights: Sequence[float], effort: float) -> float
         middle = 0.5 * (low + high)
         low, high = (middle, high) if exceeded(middle) else (low, middle)
     return high
+
+
+class HInfinityTracking:
+    """Computed torque F = M_x (x_d'' - K e) + C_x x' + G_x on a nominal model, with K from :func:`hinfinity_gain`.
+
+    The nominal M_x, C_x, G_x are those of Eqs. (8.2) to (8.4). gain: on [e, e'] or [integral of e, e, e'] with
+    e = x - x_d, the same for each axis; dt: control period [s].
+    """
+
+    def __init__(self, model: NominalModel, gain: Sequence[float], dt: float) -> None:
+        self.model, self.gain, self.dt = model, [float(value) for value in gain], dt
+        self.integral: Array | float = 0.0
+
+    def reset(self) -> None:
+        self.integral = 0.0
+
+    def __call__(self, arm: ArmState, reference: Motion, force: Array) -> Array:
+        """Force at the end effector [N]; the measured contact force is not used."""
+        error = arm.position - reference.position
+        command = -self.gain[-1] * (arm.velocity - reference.velocity) - self.gain[-2] * error
+        if len(self.gain) == 3:
+            self.integral = self.integral + self.dt * error
+            command = command - self.gain[0] * self.integral
+        jacobian, drift = self._kinematics(arm.joint_position, arm.joint_velocity)
+        acceleration = np.linalg.solve(jacobian, reference.acceleration + command - drift)
+        torque = self.model.mass_matrix(arm.joint_position) @ acceleration
+        torque = torque + self.model.bias(arm.joint_position, arm.joint_velocity)
+        return np.linalg.solve(jacobian.T, torque)
+
+    def _kinematics(self, position: Array, velocity: Array) -> tuple[Array, Array]:
+        """J and J' dq, the latter by a central difference along the motion."""
+        step = 1e-5
+        ahead, behind = (self.model.jacobian(position + sign * step * velocity) for sign in (1.0, -1.0))
+        return self.model.jacobian(position), (ahead - behind) @ velocity / (2.0 * step)

@@ -113,9 +113,7 @@ def _improve(windows: Windows, state_weight: Array, effort: Array, gain: Array) 
     inputs, size = gain.shape
     identity = np.eye(size)
     policy_term = windows.state_state @ np.kron(identity, gain.T @ effort)
-    regressors = np.hstack(
-        [windows.change, -2.0 * policy_term - 2.0 * windows.state_input @ np.kron(identity, effort)]
-    )
+    regressors = np.hstack([windows.change, -2.0 * policy_term - 2.0 * windows.state_input @ np.kron(identity, effort)])
     target = -windows.state_state @ (state_weight + gain.T @ effort @ gain).ravel()
     scaled, norms = _scaled(regressors)
     solution, _, _, singular = np.linalg.lstsq(scaled, target, rcond=None)
