@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 class NominalModel(Protocol):
-    """What the law knows of the arm: M(q), C(q, dq) dq + G(q), and the square Jacobian J(q) of the task."""
+    """What the law knows of the arm: M(q), C(q, dq) dq + G(q) and J(q), whose first d rows are the task's."""
 
     def mass_matrix(self, position: Array) -> Array: ...
 
@@ -66,8 +66,8 @@ def achieved_norm(gain: Array, weights: Sequence[float], effort: float) -> float
 class HInfinityTracking:
     """Computed torque F = M_x (x_d'' - K e) + C_x x' + G_x on a nominal model, with K from :func:`hinfinity_gain`.
 
-    The nominal M_x, C_x, G_x are those of Eqs. (8.2) to (8.4). gain: on [e, e'] or [integral of e, e, e'] with
-    e = x - x_d, the same for each axis; dt: control period [s].
+    The nominal M_x, C_x, G_x are those of Eqs. (8.2) to (8.4); the arm has as many joints as the task has axes. gain: on
+    [e, e'] or [integral of e, e, e'] with e = x - x_d, the same for each axis; dt: control period [s].
     """
 
     def __init__(self, model: NominalModel, gain: Sequence[float], dt: float) -> None:
@@ -84,14 +84,16 @@ class HInfinityTracking:
         if len(self.gain) == 3:
             self.integral = self.integral + self.dt * error
             command = command - self.gain[0] * self.integral
-        jacobian, drift = self._kinematics(arm.joint_position, arm.joint_velocity)
+        jacobian, drift = self._kinematics(arm.joint_position, arm.joint_velocity, len(error))
         acceleration = np.linalg.solve(jacobian, reference.acceleration + command - drift)
         torque = self.model.mass_matrix(arm.joint_position) @ acceleration
         torque = torque + self.model.bias(arm.joint_position, arm.joint_velocity)
         return np.linalg.solve(jacobian.T, torque)
 
-    def _kinematics(self, position: Array, velocity: Array) -> tuple[Array, Array]:
-        """J and J' dq, the latter by a central difference along the motion."""
+    def _kinematics(self, position: Array, velocity: Array, axes: int) -> tuple[Array, Array]:
+        """J and J' dq of the task's axes, the latter by a central difference along the motion."""
         step = 1e-5
-        ahead, behind = (self.model.jacobian(position + sign * step * velocity) for sign in (1.0, -1.0))
-        return self.model.jacobian(position), (ahead - behind) @ velocity / (2.0 * step)
+        here, ahead, behind = (
+            self.model.jacobian(position + shift * step * velocity)[:axes] for shift in (0.0, 1.0, -1.0)
+        )
+        return here, (ahead - behind) @ velocity / (2.0 * step)

@@ -95,7 +95,8 @@ def policy_iteration(
     """
     if not windows.excited:
         raise NotExcited(f"the data have rank {windows.rank} of {windows.required_rank}: excite longer or richer")
-    gains, values, changes, conditions = [np.atleast_2d(np.asarray(initial, float))], [], [np.nan], []
+    gains, values = [np.atleast_2d(np.asarray(initial, float))], list[Array]()
+    changes, conditions = [np.nan], list[float]()
     converged = False
     while not converged and len(values) < limit:
         value, gain, condition = _improve(windows, state_weight, effort, gains[-1])

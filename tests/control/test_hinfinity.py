@@ -73,5 +73,5 @@ def test_the_drift_of_the_jacobian_is_part_of_the_acceleration():
 
     law = HInfinityTracking(Crank(), (0.0, 0.0), dt=1e-3)
     position, velocity = np.array([0.3, -0.4]), np.array([0.7, 0.2])
-    _, drift = law._kinematics(position, velocity)
+    _, drift = law._kinematics(position, velocity, axes=2)
     assert drift == pytest.approx(-np.sin(position) * velocity**2, rel=1e-8)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dexrepro.control.broad_fuzzy import BroadFuzzyControl, barrier_energy, barrier_terms
+from dexrepro.control.barrier_tracking import BarrierTracking, barrier_energy, barrier_terms
 from dexrepro.control.task_space import ArmState, Motion
 from dexrepro.networks import AdaptiveNetwork, GrowingGaussians
 
@@ -47,8 +47,8 @@ def network(outputs, dimension, gain, enhanced=True):
 
 
 def controller(gain=1000.0, **options):
-    return BroadFuzzyControl(
-        network(4, 2, 100.0), network(4, 4, 100.0), network(2, 2, gain),
+    return BarrierTracking(
+        (network(4, 2, 100.0), network(4, 4, 100.0), network(2, 2, gain)),
         bound=(BOUND, BOUND), position_gain=(80, 80), velocity_gain=(60, 60), robust_gain=(5, 5), **options,
     )  # fmt: skip
 
