@@ -66,7 +66,7 @@ def achieved_norm(gain: Array, weights: Sequence[float], effort: float) -> float
 class HInfinityTracking:
     """Computed torque F = M_x (x_d'' - K e) + C_x x' + G_x on a nominal model, with K from :func:`hinfinity_gain`.
 
-    The nominal M_x, C_x, G_x are those of Eqs. (8.2) to (8.4); the arm has as many joints as the task has axes. gain: on
+    The nominal M_x, C_x, G_x are those of Eqs. (8.2) to (8.4); the arm has as many joints as the task axes. gain: on
     [e, e'] or [integral of e, e, e'] with e = x - x_d, the same for each axis; dt: control period [s].
     """
 
