@@ -51,13 +51,13 @@ def simulate(config: Config, rng: Callable[[str], np.random.Generator]) -> Recor
             config.duration,
             controllers={"arm": controller},
             probes=probes,
-            stop=beyond(controller, config.laws.barrier.bound),
+            stop=beyond(controller, config.bound),
         )
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
     error = recording["error"]
-    bound = np.array(config.laws.barrier.bound)
+    bound = np.array(config.bound)
     steady = error[recording.between(config.settled)]
     rms = np.sqrt(np.mean(steady**2, axis=0)) if len(steady) else (None, None)
     return {"max_x": np.abs(error).max(0)[0], "max_y": np.abs(error).max(0)[1], "rms": rms}
