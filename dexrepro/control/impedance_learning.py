@@ -57,6 +57,21 @@ class ConstantGain:
         pass
 
 
+def exploration_windows(
+    samples: Array, dt: float, length: int, exosystem: float | None, start: float = 1.0
+) -> Windows:
+    """Data of Eq. (8.10) from samples of x [m], s and tau_e [N], shape (n, 3), in windows of ``length`` steps.
+
+    Where an exosystem M [1/s] is given, s is the auxiliary signal start exp(M t): the data identity holds for any s that
+    obeys Eq. (8.8), while the desired path does not.
+    """
+    states = samples[:, :2]
+    if exosystem is not None:
+        auxiliary = start * np.exp(exosystem * dt * np.arange(len(samples)))
+        states = np.column_stack([samples[:, 0], auxiliary])
+    return Windows.of(states, samples[:, 2:], dt, length)
+
+
 class LearnedGain:
     """Algorithm 8.1: hold K_0, explore until the data have full rank, iterate, then move to the learned gain.
 
@@ -98,8 +113,12 @@ class LearnedGain:
     @property
     def windows(self) -> Windows:
         """The data gathered so far, Eq. (8.10)."""
-        samples = np.array(self._samples)
-        return Windows.of(samples[:, :2], samples[:, 2:], self.dt, self.window)
+        return exploration_windows(self.samples, self.dt, self.window, self.exosystem, self.start)
+
+    @property
+    def samples(self) -> Array:
+        """Indentation x [m], desired s and force tau_e [N] at the control instants of the exploration, shape (n, 3)."""
+        return np.array(self._samples).reshape(-1, 3)
 
     def update(self, indentation: float, reference: float, force: float) -> None:
         """Advance one control period: indentation x [m], reference s, force tau_e of the object on the robot [N]."""
@@ -118,7 +137,7 @@ class LearnedGain:
             self._enter(DONE)
         elapsed = self._steps * self.dt - self.dt
         if self.phase == EXPLORING:
-            self._record(elapsed, indentation, reference, force)
+            self._samples.append((indentation, reference, force))
         self.exploration = self._noise(elapsed) if self.phase == EXPLORING else 0.0
         if self.phase >= TRANSFERRING and self.learned is not None:
             progress = elapsed / self.transfer if self.phase == TRANSFERRING and self.transfer > 0 else 1.0
@@ -129,11 +148,6 @@ class LearnedGain:
 
     def _at_window_end(self) -> bool:
         return (len(self._samples) - 1) % self.window == 0
-
-    def _record(self, elapsed: float, indentation: float, reference: float, force: float) -> None:
-        if self.exosystem is not None:
-            reference = self.start * math.exp(self.exosystem * elapsed)
-        self._samples.append((indentation, reference, force))
 
     def _noise(self, elapsed: float) -> float:
         return sum(self.amplitude / k * math.sin(k * elapsed) for k in range(1, 9))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,6 +90,16 @@ def closed_form_gain(model: InteractionModel, cost: InteractionCost) -> Array:
     value_11 = cost.effort / control**2 * (pole_open - pole)
     value_12 = cost.tracking * cost.output / (pole + model.exosystem)
     return np.array([control * value_11, control * value_12]) / cost.effort
+
+
+def model_gain(model: Sequence[float], cost: InteractionCost, force_on: str = "robot") -> list[float]:
+    """Gain [N/m, N] of a linear-quadratic regulator for a model [G, C, M] of the object, right or wrong.
+
+    force_on: whose force tau_e is in Eq. (8.6) when the model is written down; with "environment" the gain of the force
+    on the robot is the opposite.
+    """
+    gain = closed_form_gain(InteractionModel(*model), cost)
+    return [float(value) for value in (gain if force_on == "robot" else -gain)]
 
 
 def steady_fraction(gain: Array, stiffness: float, output: float) -> float:

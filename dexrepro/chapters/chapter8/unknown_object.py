@@ -1,0 +1,97 @@
+"""The same arm meets an object it knows nothing of and learns the optimal interaction with it during contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from dexrepro.chapters.chapter8 import learning_study, object_figures
+from dexrepro.chapters.chapter8.task import TaskController, beyond, circle, joint_angles, two_link
+from dexrepro.control.impedance_learning import TRANSFERRING, InteractionLaw, LearnedGain
+from dexrepro.control.interaction_optimum import InteractionModel, optimal_gain, steady_cost, steady_fraction
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.physics.elements import TipForce
+from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.world import World
+
+FIGURES = {
+    "8.2": Figure("", ""),
+}
+TABLES: dict[str, str] = {}
+RATE = 100.0
+
+
+def scene(config: Config) -> World:
+    """The arm in a vertical plane and an object whose surface is the plane x = surface, frictionless along y."""
+    world = World(step=config.step, gravity=(0.0, -config.gravity, 0.0), perturbation=config.perturbation)
+    start = circle(config.path)(0.0).position if config.start is None else np.array(config.start)
+    world.add_arm("arm", two_link(config.arm), joint_angles(config.arm, start))
+    stiffness, damping, surface = config.object.stiffness, config.object.damping, config.object.surface
+
+    def push(time: float, position: Any, velocity: Any) -> tuple[float, float, float]:
+        depth = position[0] - surface
+        return (-(damping * velocity[0] + stiffness * depth) if depth > 0 else 0.0), 0.0, 0.0
+
+    world.add(TipForce("object", on="arm", law=push))
+    return world
+
+
+def simulate(config: Config, rng: Callable[[str], np.random.Generator]) -> Recording:
+    model = RigidBodyModel(two_link(config.arm), (0.0, -config.gravity, 0.0))
+    interaction: InteractionLaw = config.interaction
+    controller = TaskController(config.law, circle(config.path), model, interaction, axis=0)
+    with scene(config) as world:
+        recording = world.run(
+            config.duration,
+            controllers={"arm": controller},
+            probes={
+                "reference": lambda: controller.reference.position,
+                "reference_speed": lambda: float(controller.reference.velocity[0]),
+                "path": lambda: controller.path.position,
+                "error": lambda: controller.error,
+                "gain": lambda: interaction.gain.gain,
+                "phase": lambda: float(interaction.gain.phase),
+                "desired_force": lambda: interaction.desired_force,
+            },
+            stop=beyond(controller, config.bound),
+        )
+    gain = interaction.gain
+    if isinstance(gain, LearnedGain) and gain.learned is not None:
+        recording.frames["iterates"] = learning_study.iterates(gain, true_model(config))
+        if config.noise.draws:
+            recording.frames["noise"] = learning_study.noise_study(
+                gain, config.noise.draws, config.noise.force, config.noise.position, rng("noise")
+            )
+            recording.frames["assumptions"] = learning_study.assumptions(
+                gain, config.object.surface, config.noise.surface
+            )
+    return recording
+
+
+def true_model(config: Config) -> InteractionModel:
+    """What no law is told: the object itself, with the reference generator that the learner assumes."""
+    return InteractionModel(config.object.stiffness, config.object.damping, config.exosystem)
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    metrics = _tracking(recording, config)
+    if metrics["touched_at"] is not None and recording.time[-1] > metrics["touched_at"] + 1.0:
+        metrics |= _transfer(recording, config) | _settled(recording, config)
+    if "iterates" in recording.frames:
+        last = recording.frames["iterates"].iloc[-1]
+        errors = {key: abs(last[f"next_{key}"] / last[f"optimal_{key}"] - 1.0) for key in "xs"}
+        metrics |= {
+            "gain_x": last.next_x,
+            "gain_s": last.next_s,
+            "gain_error_x": errors["x"],
+            "gain_error_s": errors["s"],
+            "digits": -math.log10(max(errors.values())),
+            "iterations": len(recording.frames["iterates"]),
+            "rank": int(last["rank"]),
+            "condition": last.condition,
+            "last_change": last.change,
+        }
+    return metrics
