@@ -36,11 +36,12 @@ def joint_angles(arm: Any, position: Array) -> Array:
 
 
 def circle(settings: Any) -> Callable[[float], Motion]:
-    """The desired path of Eq. (8.46) as a function of time [s]."""
-    (cx, cy), radius, rate = settings.centre, settings.radius, settings.rate
+    """The desired path of Eq. (8.46) as a function of time [s], from an angle ``phase`` [rad] on."""
+    (cx, cy), radius, rate, phase = settings.centre, settings.radius, settings.rate, settings.phase
 
     def motion(time: float) -> Motion:
-        c, s = radius * math.cos(rate * time), radius * math.sin(rate * time)
+        angle = phase + rate * time
+        c, s = radius * math.cos(angle), radius * math.sin(angle)
         return Motion(
             np.array((cx - c, cy + s)), np.array((rate * s, rate * c)), np.array((rate**2 * c, -(rate**2) * s))
         )

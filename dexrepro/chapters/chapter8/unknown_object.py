@@ -95,3 +95,61 @@ def measure(recording: Recording, config: Config) -> Metrics:
             "last_change": last.change,
         }
     return metrics
+
+
+def _contact(recording: Recording) -> np.ndarray:
+    return recording["object.x"] != 0.0
+
+
+def _tracking(recording: Recording, config: Config) -> Metrics:
+    contact = _contact(recording)
+    error = 1e3 * np.abs(recording["error"])
+    touched = float(recording.time[contact.argmax()]) if contact.any() else None
+    return {
+        "touched_at": touched,
+        "left_at": float(recording.time[contact][-1]) if contact.any() else None,
+        "violated_at": None if recording.status == "finished" else float(recording.time[-1]),
+        "max_error_x": float(error[contact, 0].max()) if contact.any() else None,
+        "max_error_y": float(error[contact, 1].max()) if contact.any() else None,
+        "bound_used": float(np.max(error[recording.time > 0.5].max(axis=0) / (1e3 * np.array(config.bound)))),
+    }
+
+
+def _transfer(recording: Recording, config: Config) -> Metrics:
+    """Jump of the desired force by the gain alone, force rate and reference speed about the change of gain."""
+    contact, phase = _contact(recording), recording["phase"]
+    indentation = recording.series["arm.tip"][:, 0] - config.object.surface
+    state = np.column_stack([indentation, (recording["path"][:, 0] - config.object.surface) / config.cost.output])
+    jump = np.abs(np.sum(np.diff(recording["gain"], axis=0) * state[:-1], axis=1))
+    start = recording.time[contact.argmax()] + config.switch_after
+    if (phase >= TRANSFERRING).any():
+        start = recording.time[(phase >= TRANSFERRING).argmax()]
+    near = recording.between(start - 0.2, start + config.watched) & contact
+    rate = np.gradient(recording["object.x"], config.step)
+    depth = 1e3 * indentation[contact]
+    travel = float(np.abs(np.diff(depth)).sum() - (2.0 * depth.max() - depth[0] - depth[-1]))
+    return {
+        "switch_at": float(start),
+        "force_jump": float(jump[contact[:-1]].max()) if contact[:-1].any() else None,
+        "force_rate": float(np.abs(rate[near]).max()) if near.any() else None,
+        "reference_speed": float(np.abs(recording["reference_speed"][near]).max()) if near.any() else None,
+        "oscillation": travel,
+    }
+
+
+def _settled(recording: Recording, config: Config) -> Metrics:
+    """Indentation over desired indentation late in the contact, its cost, and the cost of the whole contact."""
+    contact, surface = _contact(recording), config.object.surface
+    depth, force = recording.series["arm.tip"][:, 0] - surface, recording["object.x"]
+    wanted = recording["path"][:, 0] - surface
+    cost = config.cost.tracking * (depth - wanted) ** 2 + config.cost.effort * force**2
+    late = recording.between(config.judged, config.judged + 0.5) & contact
+    fraction = float(np.mean(depth[late] / wanted[late])) if late.any() else None
+    final = np.asarray(recording["gain"][-1])
+    theory = steady_fraction(final, config.object.stiffness, config.cost.output)
+    return {
+        "fraction": fraction,
+        "fraction_theory": theory,
+        "final_cost": steady_cost(theory, config.object.stiffness, config.cost),
+        "contact_cost": float(np.trapezoid(cost[contact], dx=config.step)),
+    }
