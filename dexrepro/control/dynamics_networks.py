@@ -21,9 +21,9 @@ def dynamics_networks(
     thresholds: Sequence[float],
     neighbours: int,
     placement: float,
-    position_levels: Sequence[float],
-    velocity_levels: Sequence[float],
     step: float,
+    position_levels: Sequence[float] = (),
+    velocity_levels: Sequence[float] = (),
     max_nodes: int = 300,
 ) -> tuple[AdaptiveNetwork, AdaptiveNetwork, AdaptiveNetwork]:
     """Networks for D (d^2 outputs of x), C (d^2 outputs of [x, x']) and G (d outputs of x), Eqs. (8.32) to (8.34).

@@ -82,5 +82,7 @@ def assumptions(gain: LearnedGain, surface: float, offsets: Sequence[float]) -> 
     rows["regressed on the desired path"] = found(gain.samples, exosystem=None)
     rows["absolute coordinates"] = found(shifted(surface))
     rows |= {f"surface {-1e3 * offset:+.0f} mm off": found(shifted(offset)) for offset in offsets}
-    rows["a quarter of the data"] = found(gain.samples[: len(gain.samples) // 4 + 1])
+    quarter = gain.samples[: len(gain.samples) // 4 + 1]
+    windows = exploration_windows(quarter, gain.dt, gain.window // 4, gain.exosystem, gain.start)
+    rows["a quarter of the data"] = learn(gain, windows)
     return pd.DataFrame(rows.values(), columns=["gain_x", "gain_s"]).assign(assumption=list(rows))
