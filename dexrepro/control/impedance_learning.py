@@ -57,9 +57,7 @@ class ConstantGain:
         pass
 
 
-def exploration_windows(
-    samples: Array, dt: float, length: int, exosystem: float | None, start: float = 1.0
-) -> Windows:
+def exploration_windows(samples: Array, dt: float, length: int, exosystem: float | None, start: float = 1.0) -> Windows:
     """Data of Eq. (8.10) from samples of x [m], s and tau_e [N], shape (n, 3), in windows of ``length`` steps.
 
     Where an exosystem M [1/s] is given, s is the auxiliary signal start exp(M t): the data identity holds for any s that

@@ -19,29 +19,31 @@ from dexrepro.physics.world import World
 
 FIGURES = {
     "8.4": Figure(
-        "Where the broad network for gravity has put its nodes after one revolution, for the three printed thresholds, "
-        "with the circle and the fixed grid of the fuzzy network. The book's figure is a schematic of the network.",
+        "Where the broad network for gravity has put its nodes after one revolution, for the three printed "
+        "thresholds, with the circle and the fixed grid of the fuzzy network. The book's figure is a schematic of the "
+        "network.",
         "Nodes line the circle more densely as the threshold falls; the fixed grid covers the whole square.",
     ),
     "8.6": Figure(
-        "Circle tracking of Case 1: path, error inside its hard bounds (shaded), and the steady error with the adaptation "
-        "rate 1 of the printed law and with tuned rates. The book shows path and error of both networks.",
-        "Both networks keep the error inside the bounds; with rate 1 they are equal, with tuned rates the broad one has "
-        "half the error.",
+        "Circle tracking of Case 1: path, error inside its hard bounds (shaded), and the steady error with the "
+        "adaptation rate 1 of the printed law and with tuned rates. The book shows path and error of both networks.",
+        "Both networks keep the error inside the bounds; with rate 1 they are equal, with tuned rates the broad one "
+        "has half the error.",
     ),
     "8.7": Figure(
         "Number of nodes of the networks for D, C and G against time for the three printed thresholds.",
         "Node counts grow as the thresholds fall; the nodes of C are born in the first transient.",
     ),
     "8.8": Figure(
-        "Circle tracking of Case 2, under the joint friction of Eq. (8.47): the two networks and H-infinity with an exact "
-        "model, with masses 20 % too light, and with integral action.",
+        "Circle tracking of Case 2, under the joint friction of Eq. (8.47): the two networks and H-infinity with an "
+        "exact model, with masses 20 % too light, and with integral action.",
         "The broad network beats the fixed one and static H-infinity, and loses to H-infinity with integral action.",
     ),
     "8.A": Figure(
-        "Steady error of every network of this section against its adaptation gain, the rate times the mean squared length "
-        "of the features. Not in the book.",
-        "The errors of grown and fixed networks fall on one line: the adaptation gain sets the error, not the structure.",
+        "Steady error of every network of this section against its adaptation gain, the rate times the mean squared "
+        "length of the features. Not in the book.",
+        "The errors of grown and fixed networks fall on one line: the adaptation gain sets the error, not the "
+        "structure.",
     ),
 }
 TABLES = {
@@ -100,7 +102,8 @@ def match_rates(config: Config) -> float:
     motion = circle(config.path)
     path = [np.array(config.start)] + [motion(time).position for time in np.arange(0.0, config.duration, 0.05)]
     wanted, has = (
-        np.mean([np.sum(basis(x, grow=True) ** 2) for x in path][round(config.settled / 0.05) :]) for basis in (broad, own)
+        np.mean([np.sum(basis(x, grow=True) ** 2) for x in path][round(config.settled / 0.05) :])
+        for basis in (broad, own)
     )
     factor = float(wanted / has)
     networks: tuple[AdaptiveNetwork, ...] = config.networks

@@ -52,7 +52,11 @@ def learn(gain: LearnedGain, windows: Windows) -> Array:
 
 
 def noise_study(
-    gain: LearnedGain, draws: int, force_noise: Sequence[float], position_noise: Sequence[float], rng: np.random.Generator
+    gain: LearnedGain,
+    draws: int,
+    force_noise: Sequence[float],
+    position_noise: Sequence[float],
+    rng: np.random.Generator,
 ) -> pd.DataFrame:
     """Mean and standard deviation of the learned gain when white noise [N, m] is added to the recorded exploration."""
     rows = []

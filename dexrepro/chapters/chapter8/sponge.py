@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -65,7 +65,9 @@ class RedundantController(TaskController):
     projected so that they do not move the task. limits: largest torques [N m].
     """
 
-    def __init__(self, *arguments: Any, start: Array, stiffness: float, compensate: bool, limits: Array, **more: Any) -> None:
+    def __init__(
+        self, *arguments: Any, start: Array, stiffness: float, compensate: bool, limits: Array, **more: Any
+    ) -> None:
         super().__init__(*arguments, **more)
         self.start, self.stiffness, self.damping = start, stiffness, 2.0 * math.sqrt(stiffness)
         self.compensate, self.limits = compensate, limits
