@@ -60,8 +60,8 @@ class ConstantGain:
 def exploration_windows(samples: Array, dt: float, length: int, exosystem: float | None, start: float = 1.0) -> Windows:
     """Data of Eq. (8.10) from samples of x [m], s and tau_e [N], shape (n, 3), in windows of ``length`` steps.
 
-    Where an exosystem M [1/s] is given, s is the auxiliary signal start exp(M t): the data identity holds for any s that
-    obeys Eq. (8.8), while the desired path does not.
+    Where an exosystem M [1/s] is given, s is the auxiliary signal start exp(M t): the data identity holds for any s
+    that obeys Eq. (8.8), while the desired path does not.
     """
     states = samples[:, :2]
     if exosystem is not None:

@@ -49,7 +49,7 @@ FIGURES = {
 TABLES = {
     "T8.1": "Parameters of the two-link arm and its controller",
     "T8.A": "Circle tracking: every network and H-infinity design",
-    "T8.S": "Sensitivity: the variants of circle tracking and what they do to the claims",
+    "T8.Sa": "Sensitivity: the variants of circle tracking and what they do to the claims",
 }
 RATE = 100.0
 
@@ -96,15 +96,13 @@ def simulate(config: Config, rng: Callable[[str], np.random.Generator]) -> Recor
 
 
 def match_rates(config: Config) -> float:
-    """Scale the rates so that rate x mean |features of G|^2 on the steady path is that of the broad network; the factor."""
+    """Scale the rates so that rate x mean |features of G|^2 is the broad network's on the steady path; the factor."""
     own = config.networks[2].basis
     broad = GrowingGaussians(2, width=own.width, threshold=config.match)
     motion = circle(config.path)
     path = [np.array(config.start)] + [motion(time).position for time in np.arange(0.0, config.duration, 0.05)]
-    wanted, has = (
-        np.mean([np.sum(basis(x, grow=True) ** 2) for x in path][round(config.settled / 0.05) :])
-        for basis in (broad, own)
-    )
+    steady = round(config.settled / 0.05)
+    wanted, has = (np.mean([np.sum(basis(x, grow=True) ** 2) for x in path][steady:]) for basis in (broad, own))
     factor = float(wanted / has)
     networks: tuple[AdaptiveNetwork, ...] = config.networks
     for network in networks:

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 def iterates(gain: LearnedGain, model: InteractionModel) -> pd.DataFrame:
-    """One row an iteration of Algorithm 8.1: the gain evaluated, its value matrix, the change, the regression's state."""
+    """One row an iteration of Algorithm 8.1: the gain evaluated, its value matrix, the change, the regression."""
     learned = gain.learned
     assert learned is not None
     best = optimal_gain(model, gain.cost)
