@@ -180,11 +180,9 @@ def _draw_gains(recordings: Any, metrics: Any, config: Config) -> Any:
         for case, name in names.items():
             if case in metrics:
                 below = case.startswith("fuzzy")
-                axes.annotate(
-                    name, (metrics[case]["gain"], metrics[case][f"early_{letter}"]), xytext=(-5, -5) if below else (4, 4),
-                    textcoords="offset points", fontsize=6.5, ha="right" if below else "left",
-                    va="top" if below else "bottom",
-                )  # fmt: skip
+                place = (metrics[case]["gain"], metrics[case][f"early_{letter}"])
+                side: Any = {"xytext": (-5, -5), "ha": "right", "va": "top"} if below else {"xytext": (4, 4)}
+                axes.annotate(name, place, textcoords="offset points", fontsize=6.5, **side)
         axes.set(xlabel=r"Adaptation gain $\Gamma_G\,\overline{|\vartheta_G|^2}$", ylabel=f"rms $e_{letter}$ [mm]")
         axes.set(xlim=(0.7, 1e5), ylim=(0.03, 5))
     row[0].legend(loc="lower left")

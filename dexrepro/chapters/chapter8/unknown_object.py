@@ -148,6 +148,9 @@ def _tracking(recording: Recording, config: Config) -> Metrics:
     contact = _contact(recording)
     error = 1e3 * np.abs(recording["error"])
     touched = float(recording.time[contact.argmax()]) if contact.any() else None
+    used = float(np.max(error[recording.time > 0.5].max(axis=0) / (1e3 * np.array(config.bound))))
+    if recording.status.startswith("diverged"):
+        used = max(used, 1.0)  # it passed the bound between two samples
     return {
         "touched_at": touched,
         "surface_error": 1e3 * abs(float(recording["arm.tip"][contact.argmax(), 0]) - config.object.surface)
@@ -157,7 +160,7 @@ def _tracking(recording: Recording, config: Config) -> Metrics:
         "violated_at": None if recording.status == "finished" else float(recording.time[-1]),
         "max_error_x": float(error[contact, 0].max()) if contact.any() else None,
         "max_error_y": float(error[contact, 1].max()) if contact.any() else None,
-        "bound_used": float(np.max(error[recording.time > 0.5].max(axis=0) / (1e3 * np.array(config.bound)))),
+        "bound_used": used,
     }
 
 
