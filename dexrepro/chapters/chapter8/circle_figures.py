@@ -197,7 +197,7 @@ VARIANTS = (
     Variant("C8.02", "Gaussians of 0.05 m", "early_x", ("narrow_broad", "narrow_fuzzy"), _TUNED),
     Variant("C8.02", "Gaussians of 0.3 m, x", "early_x", ("wide_broad", "wide_fuzzy"), _TUNED),
     Variant("C8.02", "Gaussians of 0.3 m, y", "early_y", ("wide_broad", "wide_fuzzy"), _TUNED),
-    Variant("C8.02", "equal adaptation gain", "rms_x", _MATCHED, _TUNED),
+    Variant("C8.02", "equal adaptation gain", "early_x", _MATCHED, _TUNED),
     Variant("C8.02", "without cos and sin", "early_x", ("broad_plain", "fuzzy"), _TUNED),
     Variant("C8.02", "the grid with cos and sin", "early_x", ("broad", "fuzzy_enhanced"), _TUNED),
     Variant("C8.02", "elbow-down, x", "early_x", ("down_broad", "down_fuzzy"), _TUNED),

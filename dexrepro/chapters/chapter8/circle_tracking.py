@@ -100,7 +100,9 @@ def match_rates(config: Config) -> float:
     own = config.networks[2].basis
     broad = GrowingGaussians(2, width=own.width, threshold=config.match)
     motion = circle(config.path)
-    path = [np.array(config.start)] + [motion(time).position for time in np.arange(0.0, config.duration, 0.05)]
+    path = [np.array(config.start)] + [
+        motion(time).position for time in np.arange(0.0, 2.0 * np.pi / config.path.rate, 0.05)
+    ]
     steady = round(config.settled / 0.05)
     wanted, has = (np.mean([np.sum(basis(x, grow=True) ** 2) for x in path][steady:]) for basis in (broad, own))
     factor = float(wanted / has)
@@ -157,7 +159,6 @@ def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
     pairs = {
         "unit": ("broad_unit", "fuzzy_unit"),
         "tuned": ("broad", "fuzzy"),
-        "matched": ("broad", "fuzzy_matched"),
         "friction": ("friction_broad", "friction_fuzzy"),
     }
     result: Metrics = {}

@@ -124,7 +124,8 @@ def _draw_contact(recordings: Any, metrics: Any, config: Config) -> Any:
     force.set(ylabel="Contact force $\\tau_{e,x}$ [N]", xlabel="Time [s]")
     for case in ("soft", "abrupt", "lqr"):
         run, (label, line) = recordings[f"static_{case}"], METHODS[case]
-        static.plot(run.time, run["arm.tip"][:, 0], label=label, **style.LINES[line])
+        path = config.cases[f"static_{case}"].path
+        static.plot(run.time + path.phase / path.rate, run["arm.tip"][:, 0], label=label, **style.LINES[line])
     static.plot(soft.time, soft["path"][:, 0], **style.LINES["reference"])
     static.set(ylabel="$x$ [m]", xlabel="Time [s]", ylim=(0.19, 0.32))
     names = ("Position", "Error to the virtual reference", "Contact force", "Position, reference from the law itself")

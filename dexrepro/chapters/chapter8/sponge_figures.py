@@ -66,17 +66,20 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
     figure, grid = style.subplots(2, 2, height=4.8)
     learned = recordings["learned"]
     for axis, (axes, letter) in enumerate(zip(grid.flat, "xyz")):
+        middle, scale = (config.path.place[axis], 1e3) if axis < 2 else (0.0, 1.0)
         for case, (label, line) in LINES.items():
             run = recordings[case]
-            axes.plot(run.time, run["arm.tip"][:, axis], label=label, **style.LINES[line])
-        axes.plot(learned.time, learned["reference"][:, axis], label="virtual $x_0$, proposed", **style.LINES["extra2"])
-        axes.plot(learned.time, learned["path"][:, axis], label="desired $x_d$", **style.LINES["reference"])
-        axes.set(ylabel=f"${letter}$ [m]", xlim=(0, config.duration))
+            axes.plot(run.time, scale * (run["arm.tip"][:, axis] - middle), label=label, **style.LINES[line])
+        for channel, label, line in (
+            ("reference", "virtual $x_0$, proposed", "extra2"),
+            ("path", "desired $x_d$", "reference"),
+        ):
+            axes.plot(learned.time, scale * (learned[channel][:, axis] - middle), label=label, **style.LINES[line])
+        unit = f"${letter}$ - ({middle:g} m) [mm]" if axis < 2 else f"${letter}$ [m]"
+        axes.set(ylabel=unit, xlim=(0, config.duration))
         style.panel(axes, "abc"[axis])
-    for axis, axes in zip((0, 1), grid[0]):
-        middle = config.path.place[axis]
-        axes.set_ylim(middle - 1e-4, middle + 1e-4)
-        axes.ticklabel_format(useOffset=middle)
+    for axes in grid[0]:
+        axes.set_ylim(-0.1, 0.1)
     depth, error = grid[1]
     surface = config.sponge.surface
     depth.set(ylim=(0.04, 0.15), xlabel="Time [s]")
@@ -114,7 +117,7 @@ def _draw_gain(recordings: Any, metrics: Any, config: Config) -> Any:
         axes.set(xlabel="Time [s]", ylabel=f"$K_{key}$ [N/m]", xlim=(0, config.duration))
         axes.set_ylim(*((-1050, 150), (0, 1200))[index])
         _phases(axes, learned)
-    row[1].legend(loc="lower left", fontsize=6.5)
+    row[0].legend(loc="lower left", bbox_to_anchor=(0.0, 0.14), fontsize=6.5)
     found, best = steps.iloc[-1].next_x, steps.iloc[-1].optimal_x
     style.title(figure, f"The gain settles at {found:.1f} N/m, the optimum is {best:.1f} N/m")
     return figure

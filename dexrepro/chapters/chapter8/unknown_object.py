@@ -149,8 +149,8 @@ def _tracking(recording: Recording, config: Config) -> Metrics:
     error = 1e3 * np.abs(recording["error"])
     touched = float(recording.time[contact.argmax()]) if contact.any() else None
     used = float(np.max(error[recording.time > 0.5].max(axis=0) / (1e3 * np.array(config.bound))))
-    if recording.status.startswith("diverged"):
-        used = max(used, 1.0)  # it passed the bound between two samples
+    if recording.status != "finished":
+        used = max(used, 1.0)  # it may pass the bound between two samples
     return {
         "touched_at": touched,
         "surface_error": 1e3 * abs(float(recording["arm.tip"][contact.argmax(), 0]) - config.object.surface)
@@ -192,7 +192,8 @@ def _settled(recording: Recording, config: Config) -> Metrics:
     depth, force = recording["arm.tip"][:, 0] - surface, recording["object.x"]
     wanted = recording["path"][:, 0] - surface
     cost = config.cost.tracking * (depth - wanted) ** 2 + config.cost.effort * force**2
-    late = recording.between(config.judged, config.judged + 0.5) & contact
+    start = recording.time[contact.argmax()] + config.judged
+    late = recording.between(start, start + 0.5) & contact
     fraction = float(np.mean(depth[late] / wanted[late])) if late.any() else None
     final = np.asarray(recording["gain"][-1])
     theory = steady_fraction(final, config.object.stiffness, config.cost.output)
