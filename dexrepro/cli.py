@@ -18,6 +18,7 @@ from rich.table import Table
 from dexrepro import __version__
 
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--help", "-h", "--info", "-i", "--hydra-help", "--resolve")
+SHOWN = 6  # names in one line of the check
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
 
 out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 160)
@@ -74,6 +75,9 @@ def _parser() -> argparse.ArgumentParser:
     report = commands.add_parser("report", parents=[selection], help="build the HTML page from files")
     report.set_defaults(function=report_command)
 
+    study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
+    study.set_defaults(function=study_command)
+
     diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
     diff.add_argument("a", type=Path)
     diff.add_argument("b", type=Path)
@@ -88,6 +92,7 @@ def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
     arguments = [quoted(argument) for argument in arguments]
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
+        _check_sweep([argument for argument in arguments if not argument.startswith("-") and "=" in argument])
         return _hydra_run(arguments)
     extra_dir, overrides = _config_dir_option(arguments)
     return run_overrides(overrides, extra_dir)
@@ -144,8 +149,9 @@ def run_overrides(overrides: Sequence[str], extra_dir: str | None = None, worker
     outcome.skipped = skipped
     if not quiet:
         _print_summary(outcome)
-    for name, sentence in outcome.failures.items():
-        err.print(f"{name} failed: {sentence}", markup=False)
+    for sentence, names in outcome.reasons().items():
+        others = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        err.print(f"{names[0]}{others} failed: {sentence}", markup=False)
     return FAILED if outcome.failures else OK
 
 
@@ -203,6 +209,14 @@ def _implied_chapters(overrides: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(owner[name] for name in named if name in owner))
 
 
+def _check_sweep(overrides: Sequence[str]) -> None:
+    """Refuse what no job of a sweep could use, before Hydra starts any."""
+    from dexrepro.config import check_overrides, compose_chapter
+
+    numbers, rest = chapters_of(overrides)
+    check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
+
+
 def _hydra_run(arguments: list[str]) -> int:
     import hydra
 
@@ -253,15 +267,15 @@ def _print_summary(outcome: Any) -> None:
 # --------------------------------------------------------------------------------------------------- other commands
 
 
-def _selected(options: argparse.Namespace) -> tuple[list[str], Path, list[str]]:
+def _selected(options: argparse.Namespace, extra: Sequence[str] = ()) -> tuple[list[str], Path, list[str]]:
     """Chapters, results folder and experiments from ``chapter=N results=DIR only=NAME``."""
     from dexrepro.config import InputError
 
     overrides = [quoted(text) for text in options.selection]
     for text in overrides:
-        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers"):
+        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers", *extra):
             raise InputError(f"'{text}' has no meaning here; use chapter=N, only=EXPERIMENT, figure=ID or results=DIR")
-    numbers, rest = chapters_of(overrides)
+    numbers, rest = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
     values = dict(text.partition("=")[::2] for text in rest)
     only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]
     options.workers = positive_workers(int(values["workers"]) if values.get("workers", "").isdigit() else None)
@@ -322,8 +336,9 @@ def _print_check(report: dict[str, Any]) -> None:
         tolerance = entry["atol"] + entry["rtol"] * abs(entry["baseline"] or 0)
         out.print(f"  {entry['name']} = {entry['value']}, stored {entry['baseline']} +- {tolerance:.3g}", markup=False)
     for kind in ("missing", "new"):
-        for name in report[kind]:
-            out.print(f"  {kind}: {name}", markup=False)
+        if names := report[kind]:
+            more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+            out.print(f"  {kind}: {', '.join(names[:SHOWN])}{more}", markup=False)
     for claim in changed.values():
         out.print(f"  {claim['id']}: {claim['verdict']}, stored: {claim['expected']}", markup=False)
 
@@ -344,6 +359,28 @@ def report_command(options: argparse.Namespace) -> int:
 
     _, results, _ = _selected(options)
     out.print(str(page.build(results)), markup=False)
+    return OK
+
+
+def study_command(options: argparse.Namespace) -> int:
+    """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=200] [hours=H]``."""
+    from dexrepro import study
+    from dexrepro.config import InputError
+
+    numbers, results, only = _selected(options, ("claim", "samples", "hours"))
+    values = dict(text.partition("=")[::2] for text in options.selection)
+    try:
+        samples, hours = int(values.get("samples", 200)), float(values.get("hours", 0)) or None
+    except ValueError as error:
+        raise InputError("samples must be a whole number and hours a number") from error
+    for number in numbers:
+        for name in study.experiments_of(number, only, values.get("claim")):
+            path = study.run(number, name, samples, results, workers=options.workers, hours=hours)
+            out.print(f"{name}: {path}", markup=False)
+            for claim, row in study.read_json(path)["claims"].items():
+                interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
+                most = f", follows {row['parameter']} most" if row["parameter"] else ""
+                out.print(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}){most}", markup=False)
     return OK
 
 
