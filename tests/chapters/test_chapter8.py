@@ -80,7 +80,7 @@ def test_the_arm_learns_the_optimal_gain_of_an_object_it_knows_nothing_of():
 
 def test_the_gripper_stands_above_the_sponge_and_presses_it():
     recording, config = run("sponge", "lqr", duration=2.4)
-    assert recording["arm.tip"][0] == pytest.approx([0.77, -0.27, 0.35], abs=1e-6)
+    assert recording["arm.tip"][0] == pytest.approx([0.77, -0.27, 0.35], abs=5e-5)
     metrics = sponge.measure(recording, config)
     assert metrics["bound_used"] < 0.1
     assert metrics["peak_force"] > 1.0

@@ -155,7 +155,7 @@ def _picture(world: World, recording: Recording, config: Config, time: float) ->
     surface = config.sponge.surface
     depth = max(0.0, surface - float(recording["arm.tip"][index, 2]))
     x, y = config.path.place
-    camera = Camera(target=(0.45, -0.3, 0.22), distance=1.05, yaw=25.0, pitch=-15.0)
+    camera = Camera(target=(0.45, -0.3, 0.27), distance=1.2, yaw=25.0, pitch=-15.0)
     pose = (x, y, surface / 2 - depth, 0.0, 0.0, 0.0, 1.0)
     return world.render({"arm": recording["arm.position"][index]}, {"sponge": pose}, camera, (480, 400))
 

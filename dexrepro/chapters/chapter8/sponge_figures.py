@@ -75,7 +75,7 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
             ("path", "desired $x_d$", "reference"),
         ):
             axes.plot(learned.time, scale * (learned[channel][:, axis] - middle), label=label, **style.LINES[line])
-        unit = f"${letter}$ - ({middle:g} m) [mm]" if axis < 2 else f"${letter}$ [m]"
+        unit = f"${letter}$ {-middle:+g} m [mm]" if axis < 2 else f"${letter}$ [m]"
         axes.set(ylabel=unit, xlim=(0, config.duration))
         style.panel(axes, "abc"[axis])
     for axes in grid[0]:
