@@ -78,6 +78,7 @@ def test_the_iterates_are_those_of_policy_iteration_with_the_model_known():
     learned = policy_iteration(windows, COST.state_weight, COST.effort_weight, INITIAL, tolerance=1e-3)
     known = [-30.01, -11.430, -3.3747, -0.9491, -0.68046, -0.677079, -0.67707825]
     assert learned.gains[:, 0, 0] == pytest.approx(known, rel=2e-4)
+    assert learned.gain[0] == pytest.approx(optimal_gain(OBJECT, COST), rel=1e-6)
     eigenvalues = np.linalg.eigvalsh(learned.values[:-1] - learned.values[1:])
     assert np.all(eigenvalues > -1e-6)
 

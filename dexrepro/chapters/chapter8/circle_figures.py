@@ -138,7 +138,7 @@ def _draw_centres(recordings: Any, metrics: Any, config: Config) -> Any:
 
     figure, row = style.subplots(1, 3, height=2.6, sharex=True, sharey=True)
     levels = config.networks.position_levels
-    for index, (axes, case) in enumerate(zip(row, THRESHOLDS)):
+    for axes, case in zip(row, THRESHOLDS):
         run, nodes = recordings[case], recordings[case].frames["nodes"]
         threshold = config.cases[case].networks.thresholds[2]
         axes.plot(*run["reference"].T, **style.LINES["reference"])
