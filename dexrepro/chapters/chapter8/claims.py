@@ -208,7 +208,7 @@ CLAIMS = (
         ),
         printed=less(f"{OBJECT}.soft.desired_path_error", 0.01),
         where="8.4.3",
-        note="Three digits, limited by the half step by which velocities of the physics engine lag; ten digits on "
+        note="Three digits, limited by the half step by which velocities of the physics engine lag; nine digits on "
         "exact data. The regressor s must obey (8.8); the desired path x_d/N does not (E8.09).",
     ),
     Claim(
