@@ -78,6 +78,14 @@ def _parser() -> argparse.ArgumentParser:
     study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
     study.set_defaults(function=study_command)
 
+    render = commands.add_parser("render", parents=[selection], help="animate recorded runs (case=NAME format=gif|mp4)")
+    render.set_defaults(function=render_command)
+
+    new = commands.add_parser("new", help="write a working control law of your own, with its test")
+    new.add_argument("what", choices=["controller"])
+    new.add_argument("name", help="class name, for example MyLaw")
+    new.set_defaults(function=new_command)
+
     diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
     diff.add_argument("a", type=Path)
     diff.add_argument("b", type=Path)
@@ -359,6 +367,38 @@ def report_command(options: argparse.Namespace) -> int:
 
     _, results, _ = _selected(options)
     out.print(str(page.build(results)), markup=False)
+    return OK
+
+
+def new_command(options: argparse.Namespace) -> int:
+    """``dexrepro new controller NAME``."""
+    from dexrepro.scaffold import new_controller
+
+    law, test, command = new_controller(options.name, Path())
+    out.print(f"wrote {law} and {test}; try:\n  pytest {test}\n  {command}", markup=False)
+    return OK
+
+
+def render_command(options: argparse.Namespace) -> int:
+    """``dexrepro render (FOLDER | chapter=N [only=EXPERIMENT]) [case=NAME] [format=gif|mp4]``."""
+    from dexrepro import chapters
+    from dexrepro.config import InputError
+    from dexrepro.report import animation
+
+    folders = [Path(text) for text in options.selection if "=" not in text]
+    options.selection = [text for text in options.selection if "=" in text]
+    numbers, results, only = _selected(options, ("case", "format"))
+    values = dict(text.partition("=")[::2] for text in options.selection)
+    kind = values.get("format", "gif")
+    if kind not in ("gif", "mp4"):
+        raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
+    for number in () if folders else numbers:
+        for experiment in chapters.load(number).experiments:
+            folder = results / f"chapter{number}" / experiment.name
+            if experiment.name in only or (not only and experiment.has("scene") and folder.exists()):
+                folders.append(folder)
+    for folder in folders:
+        out.print(str(animation.render(folder, values.get("case"), kind)), markup=False)
     return OK
 
 

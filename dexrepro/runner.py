@@ -218,7 +218,7 @@ def source_digest(chapter: str, with_report: bool = False) -> str:
         parts = path.relative_to(root).parts
         if parts[0] == "chapters" and len(parts) > 2 and parts[1] != f"chapter{chapter}":
             continue
-        if parts[0] in ("cli.py", "baselines.py", "progress.py", "study.py") or (
+        if parts[0] in ("cli.py", "baselines.py", "progress.py", "study.py", "scaffold.py") or (
             parts[0] == "report" and not with_report
         ):
             continue

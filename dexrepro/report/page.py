@@ -137,6 +137,10 @@ class _Report:
                 for identifier, title in experiment.tables.items()
                 if (place / "tables" / f"{identifier}.csv").exists()
             ],
+            "animations": [
+                {"name": path.stem, "path": _copied(path, target, f"files/{experiment.name}")}
+                for path in sorted(place.glob("animation/*.gif"))
+            ],
             "files": files,
             "run": run,
             "provenance": (
@@ -279,6 +283,11 @@ def _flat(node: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
         else:
             rows.append((f"{prefix}.{key}", value))
     return rows
+
+
+def _copied(source: Path, folder: Path, link: str) -> str:
+    _copy(source, folder / source.name)
+    return f"{link}/{source.name}"
 
 
 def _copy(source: Path, target: Path) -> None:
