@@ -221,7 +221,7 @@ VARIANTS = (
 def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
-    columns = ("max_x", "max_y", "bound_used", "rms_x", "rms_y", "early_x", "early_y", "ripple_x", "nodes", "features",
+    columns = ("max_x", "max_y", "bound_used", "rms_x", "rms_y", "early_x", "early_y", "nodes", "features",
                "network_force", "feature_power", "gain")  # fmt: skip
     rows = [
         {"case": case, **{name: metrics[case].get(name) for name in columns}} for case in recordings if case in metrics

@@ -124,7 +124,6 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "bound_used": float(np.max(largest / bound)),
         "violated_at": None if recording.status == "finished" else float(recording.time[-1]),
         "energy_ratio": float(energy[recording.time > 1.0].max() / energy[0]) if recording.time[-1] > 1.0 else None,
-        "ripple_x": _ripple(recording, config),
     }
     for name, part in (("rms", steady), ("early", early)):
         for axis, letter in enumerate("xy"):
@@ -143,15 +142,6 @@ def measure(recording: Recording, config: Config) -> Metrics:
             "gain": float(power.mean() * recording.frames["rate"]["gravity"][0]) if len(power) else None,
         }
     return metrics
-
-
-def _ripple(recording: Recording, config: Config) -> float | None:
-    """Standard deviation [mm] of the x error about its half-second mean from 11 to 12 s: the limit cycle."""
-    part = 1e3 * recording["error"][recording.between(10.5, 12.0), 0]
-    width = round(0.5 / (config.step * config.record_every))
-    if len(part) < 2.5 * width:
-        return None
-    return float(np.std((part - np.convolve(part, np.ones(width) / width, mode="same"))[width:-width]))
 
 
 def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
