@@ -33,5 +33,5 @@ def least_squares(features: Array, target: Array, rcond: float = 1e-10, ridge: f
 
 def locally_weighted(kernels: GaussianKernels, phases: Array, target: Array) -> Array:
     """Locally weighted regression, one kernel at a time: w_i = sum phi_i s f / sum phi_i s^2, shape (..., n, k)."""
-    activations = np.swapaxes(kernels.activations(phases), -1, -2)
+    activations = np.exp(kernels.exponents(phases))
     return (activations @ (phases[:, None] * target)) / (activations @ phases**2)[..., None]
