@@ -109,4 +109,5 @@ def _difference(knots: Array, degree: int) -> Any:
     """Matrix from the coefficients of a spline to those of its derivative."""
     count = len(knots) - degree - 1
     scale = degree / (knots[degree + 1 : count + degree] - knots[1:count])
-    return sparse.diags_array([-scale, scale], offsets=[0, 1], shape=(count - 1, count)).tocsr()
+    diagonals: Any = [-scale, scale]
+    return sparse.diags_array(diagonals, offsets=[0, 1], shape=(count - 1, count)).tocsr()
