@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -146,11 +147,11 @@ class GlobalAdaptiveControl:
         return torque, self.velocity_gain
 
     def _virtual_velocity(
-        self, q: Array, dq: Array, jacobian: Array, reference: tuple[Array, Array], ratios: tuple[Array, Array]
+        self, q: Array, dq: Array, jacobian: Array, reference: tuple[Array, Array], ratios: tuple[float, float]
     ) -> tuple[Array, Array]:
         """alpha (4.20) and its exact derivative, for alpha = J^T w with J J^T w = u."""
         (velocity, acceleration), (ratio, ratio_rate) = reference, ratios
-        decay = np.sqrt(2.0 * ratio**2 + self.floor)  # l(t)
+        decay = math.sqrt(2.0 * ratio**2 + self.floor)  # l(t)
         feedback = self.position_gain + decay
         u = velocity - feedback * self.error
         u_rate = acceleration - feedback * (jacobian @ dq - velocity) - (2.0 * ratio * ratio_rate / decay) * self.error

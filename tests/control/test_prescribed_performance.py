@@ -21,7 +21,7 @@ def test_relative_rate_and_its_derivative_match_finite_differences():
 
 
 def test_usage_is_one_at_either_bound():
-    assert BOUND.usage([0.3, -0.2], 1.0) == pytest.approx([1.0, -1.0])
+    assert BOUND.usage(np.array([0.3, -0.2]), 1.0) == pytest.approx([1.0, -1.0])
 
 
 @settings(deadline=None, max_examples=30)
