@@ -1,0 +1,4 @@
+"""What Chapter 5 claims, as predicates over measured numbers."""
+
+CLAIMS = ()
+REFERENCES = ()
