@@ -175,7 +175,8 @@ def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[
         return selected
     made = [e for e in selected if any(matches(str(figure), i) for i in (*e.figures, *e.tables))]
     if not made:
-        ids = [identifier for e in selected for identifier in (*e.figures, *e.tables)]
+        kind = "tables" if str(figure).startswith("T") else "figures"
+        ids = [identifier for e in selected for identifier in getattr(e, kind)]
         raise InputError(f"unknown figure '{figure}' in chapter {chapter}: {nearest(str(figure), ids)}")
     return made
 
