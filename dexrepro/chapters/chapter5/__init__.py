@@ -1,9 +1,9 @@
 """Chapter 5: movement primitives that grow, and adaptive neural control with error bounds."""
 
-from dexrepro.chapters.chapter5 import claims, errata, letter_accuracy
+from dexrepro.chapters.chapter5 import claims, errata, letter_accuracy, obstacle_crossing, style_transformation
 from dexrepro.experiment import Experiment
 
 TITLE = "Incremental movement primitives and adaptive neural control"
-EXPERIMENTS = (Experiment.of(letter_accuracy),)
+EXPERIMENTS = tuple(map(Experiment.of, (letter_accuracy, style_transformation, obstacle_crossing)))
 CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES
 ERRATA = errata.ERRATA

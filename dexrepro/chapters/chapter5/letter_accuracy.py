@@ -66,7 +66,7 @@ def _learn(count: int, taught: Demonstration, config: Config, rng: np.random.Gen
         learned["dmp_local"] = _fit(kernels, taught, config, "lwr")
         learned["dmp_equal"] = _fit(same, taught, config)
         learned["dmp_plus_equal"] = _fit(_truncated(half, config), taught, config)
-    options = {key: training[key] for key in ("rest", "rcond", "ridge", "update")}
+    options = {"update": training.solution, **{key: training[key] for key in ("rest", "rcond", "ridge")}}
     for m in config.features.counts:
         learned[f"idmp{m}"] = extend(base, features.first(m), taught, **options)
     return learned
@@ -123,7 +123,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         for method in ("dmp", "dmp_plus", best):
             chosen = part[part.method == method]
             metrics[f"n{count}.{method}.after"] = float(chosen.after.median())
-            metrics[f"n{count}.{method}.limit"] = float(chosen.limit.max())
+            metrics[f"n{count}.{method}.limit"] = max(float(chosen.limit.max()), 1e-9)  # below is rounding
         metrics[f"n{count}.dmp_plus.beats_dmp"] = _share(errors.dmp_plus < errors.dmp)
         metrics[f"n{count}.ordered"] = _share((errors[best] < errors.dmp_plus) & (errors.dmp_plus < errors.dmp))
         ratios = errors[best] / errors.dmp_plus
@@ -180,7 +180,7 @@ def _draw_paths(recording: Recording, metrics: Metrics, config: Config) -> Any:
         boxes = row[3].boxplot(values, whis=(0, 100), widths=0.6, patch_artist=True, medianprops={"color": "black"})
         for box, method in zip(boxes["boxes"], METHODS):
             box.set(facecolor=style.LINES[lines[method]]["color"], alpha=0.6, linewidth=0.6)
-        row[3].set(yscale="log", ylabel="MSE [cm²]", ylim=(3e-6, 5))
+        row[3].set(yscale="log", ylabel="MSE [cm²]", ylim=(1e-6, 5))
         row[3].set_xticks([1, 2, 3], METHODS.values())
         row[3].set_title(f"{config.kernels.draws} draws")
     shares = " and ".join(f"{100 * metrics[f'n{count}.ordered']:.0f} %" for count in counts)  # type: ignore[operator]
@@ -212,8 +212,8 @@ def _draw_features(recording: Recording, metrics: Metrics, config: Config) -> An
     axes[0, 0].set(ylabel="MSE [cm²]", ylim=(5e-6, 30))
     last = config.kernels.counts[-1]
     better = [m for m in added if (metrics[f"n{last}.idmp{m}.beats_dmp_plus"] or 0) > 0.5]
-    text = f"With {last} kernels it takes {min(better)} added features to beat the DMP+" if better else "DMP+ stays ahead"
-    style.title(figure, f"{text}; a plain model of equal size is as good or nearly so")
+    text = f"With {last} kernels, {min(better)} added features beat the DMP+" if better else "The DMP+ stays ahead"
+    style.title(figure, f"{text}; one of equal size does as well")
     return figure
 
 
