@@ -41,9 +41,9 @@ def kernels(count: int, config: Config, rng: np.random.Generator | None) -> Gaus
     return GaussianKernels.with_widths(places, config.dmp.decay, widths)
 
 
-def features(base: GaussianKernels, count: int, config: Config, rng: np.random.Generator, **options: Any) -> Any:
+def features(initial: GaussianKernels, count: int, config: Config, rng: np.random.Generator, **options: Any) -> Any:
     settings = config.features
-    return ExtendedKernels.draw(base, count, rng, settings.weight_std, settings.bias_range, **options)
+    return ExtendedKernels.draw(initial, count, rng, settings.weight_std, settings.bias_range, **options)
 
 
 def squared_error(path: Any, wanted: Any) -> float:
