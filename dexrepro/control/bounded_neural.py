@@ -31,7 +31,7 @@ class Network(Protocol):
 
 
 class BoundedNeuralTracking:
-    """tau = M alpha' + C alpha + G + K_tau delta + rho F - tau_e + W^T S(z), Eq. (5.32) corrected, M, C, G at (q_d, q_d').
+    """tau = M alpha' + C alpha + G + K_tau delta + rho F - tau_e + W^T S(z), M, C, G at (q_d, q_d'); Eq. (5.32) corrected.
 
     e = q_d - q, alpha = q_d' - L e, delta = alpha - q', L = -(k_c + |v'/v|); F = e / (b^2 - e^2) with b the bound that
     the sign of e selects; dW/dt = Gamma_s (S delta^T - K_s W), which the network does. Printed are -W^T S (which turns

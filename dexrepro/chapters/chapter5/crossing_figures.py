@@ -11,29 +11,33 @@ from dexrepro.experiment import Config, Recording
 from dexrepro.humans.crossing import obstacle_boxes
 from dexrepro.report import style
 
-COLOURS = {1: style.PRINTED, 2: style.EXTRA[0], 3: style.BOOK}  # red, green, blue, as in the book
+COLOURS = {1: style.EXTRA[1], 2: style.EXTRA[0], 3: style.BOOK}  # of the skills, by blocks
 
 
 def crossings(recording: Recording, metrics: Any, config: Config) -> Any:
-    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.6))
-    grid = figure.add_gridspec(2, 4, height_ratios=(1.15, 1))
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 3.7))
+    grid = figure.add_gridspec(2, 4, width_ratios=(1.15, 1, 1.15, 1))
     paths, reached = recording.frames["paths"], recording.frames["goals"]
-    contents: list[tuple[str, str, int, list[Any]]] = [
-        ("a", "one block", 1, [_lines(paths, "demonstration", 1, "#999999", 0.6), _lines(paths, "skill", 1, COLOURS[1], 1.6)]),
-        ("b", "one to three blocks", 3, [*_growth(paths), *(_lines(paths, "skill", b, COLOURS[b], 1.6) for b in COLOURS)]),
-        ("c", "goals, two blocks", 2, [_lines(paths, "goal", 2, COLOURS[1], 0.7), _lines(paths, "skill", 2, COLOURS[2], 1.8)]),
-        ("d", "goals, three blocks", 3, [_lines(paths, "goal", 3, COLOURS[1], 0.7), _lines(paths, "skill", 3, COLOURS[3], 1.8)]),
-    ]  # fmt: skip
-    for column, (letter, name, blocks, groups) in enumerate(contents):
-        space = figure.add_subplot(grid[0, column], projection="3d", computed_zorder=False)
-        side = figure.add_subplot(grid[1, column])
+    skills = {b: _lines(paths, "skill", b, colour, 1.6) for b, colour in COLOURS.items()}
+    contents: list[tuple[str, int, list[Any]]] = [
+        ("demonstrations and DMP", 1, [_lines(paths, "demonstration", 1, "#999999", 0.6), skills[1]]),
+        ("one to three blocks", 3, [*_growth(paths), *skills.values()]),
+        ("goals, two blocks", 2, [_lines(paths, "goal", 2, style.RIVAL, 0.8), skills[2]]),
+        ("goals, three blocks", 3, [_lines(paths, "goal", 3, style.RIVAL, 0.8), skills[3]]),
+    ]
+    for place, (name, blocks, groups) in enumerate(contents):
+        row, column = place // 2, 2 * (place % 2)
+        space = figure.add_subplot(grid[row, column], projection="3d", computed_zorder=False)
+        side = figure.add_subplot(grid[row, column + 1])
         _space(space, blocks, groups)
         _side(side, blocks, groups)
-        style.panel(space, letter, name)
-        if letter in "cd":
+        space.set_title(f"({'abcd'[place]}) {name}", y=0.98)
+        if row == 1:
             _distances(side, reached[(reached.draw == 0) & (reached.blocks == blocks)])
     worst = min(metrics[f"goals{b}.clearance"] for b in (2, 3))
-    style.title(figure, f"Added features lift the skill over three blocks; no path to any goal comes nearer than {worst:.1f} cm")
+    style.title(
+        figure, f"Added features lift the skill over three blocks; no path comes nearer to them than {worst:.1f} cm"
+    )
     return figure
 
 
@@ -62,38 +66,41 @@ def _space(axes: Any, blocks: int, groups: list[Any]) -> None:
     for lines, colour, width in groups:
         for line in lines:
             axes.plot(*line.T, color=colour, linewidth=width)
-    axes.set(xlim=(-7, 9), ylim=(-5, 5), zlim=(0, 10), box_aspect=(16, 10, 10))
+    axes.set(xlim=(-7, 9), ylim=(-5, 5), zlim=(0, 10), yticks=(-4, 0, 4))
+    axes.set_box_aspect((16, 10, 10), zoom=1.25)
     axes.view_init(elev=18, azim=-62)
     axes.tick_params(labelsize=5, pad=-3)
     axes.set_xlabel("x [cm]", fontsize=6, labelpad=-8)
     axes.set_ylabel("y [cm]", fontsize=6, labelpad=-8)
-    axes.set_zlabel("z [cm]", fontsize=6, labelpad=-9)
 
 
 def _box(axes: Any, low: Any, high: Any) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
-    faces = [corners[list(i)] for i in ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))]
+    faces = [
+        corners[list(i)] for i in ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
+    ]
     axes.add_collection3d(Poly3DCollection(faces, facecolor="#D9C7A5", edgecolor="#8A7A55", linewidth=0.3, alpha=0.8))
 
 
 def _side(axes: Any, blocks: int, groups: list[Any]) -> None:
     for low, high in obstacle_boxes(blocks):
         width, height = high[0] - low[0], high[2] - low[2]
-        patch = style.plt.Rectangle((low[0], low[2]), width, height, facecolor="#D9C7A5", edgecolor="#8A7A55", linewidth=0.4)
+        patch = style.plt.Rectangle(
+            (low[0], low[2]), width, height, facecolor="#D9C7A5", edgecolor="#8A7A55", linewidth=0.4
+        )
         axes.add_patch(patch)
     for lines, colour, width in groups:
         for line in lines:
             axes.plot(line[:, 0], line[:, 2], color=colour, linewidth=width)
-    axes.set(xlim=(-7, 9), ylim=(-0.5, 9), aspect="equal", xlabel="x [cm]", ylabel="z [cm]")
+    axes.set(xlim=(-7, 9), ylim=(-0.5, 9.5), aspect="equal", xlabel="x [cm]", ylabel="z [cm]")
 
 
 def _distances(axes: Any, reached: Any) -> None:
-    """Smallest clearance for every goal, in the arrangement of the goals."""
-    for x, group in reached.groupby("x"):
-        text = "\n".join(f"{value:.2f}" for value in group.sort_values("y", ascending=False).clearance)
-        axes.annotate(text, (x, 8.9), fontsize=5, ha="center", va="top")
+    """Smallest clearance [cm] of the paths to the goals at each x."""
+    values = " / ".join(f"{group.clearance.min():.2f}" for _, group in reached.groupby("x"))
+    axes.set_title(f"clearance {values} cm", fontsize=6, fontweight="normal")
 
 
 def changes(recording: Recording, metrics: Any, config: Config) -> Any:

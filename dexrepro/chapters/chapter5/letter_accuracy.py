@@ -103,7 +103,15 @@ def _typical_paths(draws: pd.DataFrame, runs: list[Any], config: Config) -> pd.D
             key = f"idmp{max(config.features.counts)}" if method == "idmp" else method
             row = draws[(draws.kernels == count) & (draws.draw == typical) & (draws.method == key)]
             (x_d, y_d), (x, y) = (path[::4].T for path in runs[row.index[0]])
-            columns = {"kernels": count, "method": method, "mse": row.mse.iloc[0], "x": x, "y": y, "x_d": x_d, "y_d": y_d}
+            columns = {
+                "kernels": count,
+                "method": method,
+                "mse": row.mse.iloc[0],
+                "x": x,
+                "y": y,
+                "x_d": x_d,
+                "y_d": y_d,
+            }
             parts.append(pd.DataFrame(columns))
     return pd.concat(parts, ignore_index=True)
 

@@ -16,8 +16,8 @@ FIGURES = {
     "5.8": Figure(
         "(a) Demonstrations over one block (grey) and the skill that a DMP learns; (b) the skill changes to two and "
         "three blocks as features are added, thin: every five features; (c, d) the learned skills (thick) and their "
-        "generalisations to nine goals. Above in space, below from the side; the number at each goal is the smallest "
-        "distance of its path from the obstacle. Synthetic demonstrations; the book shows recorded ones.",
+        "generalisations to nine goals (orange), in space and from the side, with the smallest distance of the paths "
+        "from the obstacle. Synthetic demonstrations; the book shows recorded ones.",
         "The skill rises from one to three blocks and reaches all nine goals without touching the obstacle.",
     ),
     "5.C": Figure(

@@ -18,8 +18,8 @@ FIGURES = {
         "The five demonstrated letters a, z, l, k and w.",
     ),
     "5.6": Figure(
-        "The letter a (centre, blue frame; red in the book) turns into four other letters as shared random features are added, five at a "
-        "time, along the diagonals; black frames: demonstrations. Only the weights of the new features are learned. "
+        "The letter a (centre, blue frame; red in the book) turns into four other letters as shared random features are "
+        "added, five at a time, along the diagonals; black frames: demonstrations. Only the weights of the new features are learned. "
         "Right: distance to the target and to the initial letter over the number of added features, median of the "
         "draws. The book shows the left part.",
         "The shapes leave the letter a gradually and are clearly distinct letters after 30 added features.",
@@ -76,8 +76,9 @@ def _learn(shown: dict[str, Demonstration], config: Config, rng: np.random.Gener
     learned = {}
     for m in (0, *config.features.counts):
         styles = extend_styles(
-            base, features.first(m), [shown[name] for name in config.hand.targets], relearn_old=training.relearn_old and m > 0,
-            rest=training.rest, rcond=training.rcond, update=training.solution if m else "exact",
+            base, features.first(m), [shown[name] for name in config.hand.targets],
+            relearn_old=training.relearn_old and m > 0, rest=training.rest, rcond=training.rcond,
+            update=training.solution if m else "exact",
         )  # fmt: skip
         learned.update({(name, m): style for name, style in zip(config.hand.targets, styles)})
     return learned
