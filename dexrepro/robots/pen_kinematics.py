@@ -1,4 +1,4 @@
-"""Closed-form inverse kinematics of the pen arm."""
+"""Closed-form kinematics of the pen arm, for whole paths at once."""
 
 from __future__ import annotations
 
@@ -8,6 +8,14 @@ from numpy.typing import NDArray
 from dexrepro.robots.pen_arm import LENGTH
 
 Array = NDArray[np.float64]
+
+
+def pen_arm_tip(angles: Array, length: float = LENGTH) -> Array:
+    """Tip positions (..., 3) [m] in the frame of the arm's base for yaw, shoulder and elbow (..., 3) [rad]."""
+    yaw, shoulder, elbow = np.moveaxis(angles, -1, 0)
+    reach = length * (np.cos(shoulder) + np.cos(shoulder + elbow))
+    height = length * (np.sin(shoulder) + np.sin(shoulder + elbow))
+    return np.stack([reach * np.cos(yaw), reach * np.sin(yaw), height], axis=-1)
 
 
 def pen_arm_angles(tip: Array, length: float = LENGTH) -> Array:

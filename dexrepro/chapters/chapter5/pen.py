@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from dexrepro.control.prescribed_performance import PerformanceBound
-from dexrepro.experiment import Config, Recording
+from dexrepro.control.bounded_neural import barrier
+from dexrepro.control.gravity_pd import GravityPD
+from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.networks import AdaptiveNetwork, Gaussians
 from dexrepro.physics.elements import JointLoad, TipForce, joint_friction
 from dexrepro.physics.model import RigidBodyModel
@@ -16,45 +17,50 @@ from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
 from dexrepro.primitives import Demonstration
 from dexrepro.robots.pen_arm import pen, pen_arm
-from dexrepro.robots.pen_kinematics import pen_arm_angles
+from dexrepro.robots.pen_kinematics import pen_arm_angles, pen_arm_tip
 
 Reference = tuple[Any, Any, Any]
+SETTLED = 1.0  # s, from here on errors count as settled
+HEIGHT = -0.10  # m, of paper and table below the arm's shoulder
 
 
 def on_paper(path: Any) -> Any:
     """Tip positions (N, 3) [m] for a letter (N, 2) [cm]: to the right is -y, up on the paper is away from the arm."""
-    return np.stack([0.145 + 0.008 * path[:, 1], -0.01 * (path[:, 0] - 2.0), np.full(len(path), -0.10)], axis=1)
+    return np.stack([0.145 + 0.008 * path[:, 1], -0.01 * (path[:, 0] - 2.0), np.full(len(path), HEIGHT)], axis=1)
+
+
+def from_paper(tip: Any) -> Any:
+    """The inverse of ``on_paper``."""
+    return np.stack([2.0 - 100 * tip[:, 1], (tip[:, 0] - 0.145) / 0.008], axis=1)
 
 
 def over_table(path: Any) -> Any:
     """Tip positions (..., 3) [m] for a crossing (..., 3) [cm]."""
     path = np.asarray(path)
-    return np.stack([0.17 + 0.01 * path[..., 1], -0.01 * path[..., 0], -0.10 + 0.01 * path[..., 2]], axis=-1)
+    return np.stack([0.17 + 0.01 * path[..., 1], -0.01 * path[..., 0], HEIGHT + 0.01 * path[..., 2]], axis=-1)
 
 
 def from_table(tip: Any) -> Any:
     """The inverse of ``over_table``."""
-    tip = np.asarray(tip)
-    return 100 * np.stack([-tip[..., 1], tip[..., 0] - 0.17, tip[..., 2] + 0.10], axis=-1)
+    return 100 * np.stack([-tip[..., 1], tip[..., 0] - 0.17, tip[..., 2] - HEIGHT], axis=-1)
 
 
 def reference(tip: Any, step: float) -> Reference:
     """Joint angles, rates and accelerations (N, 3) each for a tip path (N, 3) [m] sampled every ``step`` [s]."""
-    time = step * np.arange(len(tip))
-    angles = Demonstration.of(time, pen_arm_angles(tip), at_rest=False)
+    angles = Demonstration.of(step * np.arange(len(tip)), pen_arm_angles(tip), at_rest=False)
     return angles.position, angles.velocity, angles.acceleration
 
 
 def world(config: Config, start: Any) -> World:
     """The arm at joint angles ``start`` [rad], with friction in its joints and drag at its tip."""
-    result = World(step=config.step, perturbation=config.perturbation)
-    sensor = Sensor(
-        encoder_resolution=config.sensing.resolution, velocity_cutoff=config.sensing.velocity_cutoff or np.inf
-    )
-    result.add_arm("arm", pen_arm(tool=pen(config.arm.pen_mass), effort=config.arm.torque_limit), start, sensor=sensor)
-    result.add(JointLoad("arm", joint_friction(config.arm.viscous, config.arm.coulomb)))
-    if config.arm.drag:
-        result.add(TipForce("drag", "arm", _drag(config.arm.drag)))
+    settings = config.arm
+    result = World(step=settings.step, perturbation=config.perturbation)
+    cutoff = np.inf if settings.velocity_cutoff is None else settings.velocity_cutoff
+    sensor = Sensor(encoder_resolution=settings.resolution, velocity_cutoff=cutoff)
+    result.add_arm("arm", pen_arm(tool=pen(settings.pen_mass), effort=settings.torque_limit), start, sensor=sensor)
+    result.add(JointLoad("arm", joint_friction(settings.viscous, settings.coulomb)))
+    if settings.drag:
+        result.add(TipForce("drag", "arm", _drag(settings.drag)))
     return result
 
 
@@ -71,50 +77,77 @@ def _drag(size: float) -> Callable[[float, Any, Any], Any]:
 
 def model(config: Config) -> RigidBodyModel:
     """What the laws know: the arm with other masses."""
-    return RigidBodyModel(pen_arm(tool=pen(config.arm.pen_mass)), mass_error=config.model_mass - 1.0)
+    return RigidBodyModel(pen_arm(tool=pen(config.arm.pen_mass)), mass_error=config.arm.model_mass - 1.0)
 
 
-def network(config: Config, target: Reference, rng: np.random.Generator, nodes: int | None = None) -> AdaptiveNetwork:
-    """Gaussian nodes scattered along a reference, weights zero."""
-    centres = node_centres(config, target, rng, config.network.nodes if nodes is None else nodes)
-    return AdaptiveNetwork(
-        Gaussians(centres, np.sqrt(2.0)),
-        3,
-        gain=config.network.gain,
-        leakage=config.network.gain * config.network.leakage,
-        step=config.step,
-    )
-
-
-def node_centres(config: Config, target: Reference, rng: np.random.Generator, nodes: int) -> Any:
-    """Centres (nodes, 6) in the scaled input [q / 0.35, q' / 1.2]."""
+def node_centres(config: Config, target: Reference, nodes: int, rng: np.random.Generator) -> Any:
+    """Centres (nodes, 6) scattered along a reference, in the scaled input [q / 0.35, q' / 1.2] of the law."""
     samples = np.linspace(0, len(target[0]) - 1, nodes).round().astype(int)
     scaled = np.concatenate([target[0] / 0.35, target[1] / 1.2], axis=1)
     return scaled[samples] + config.network.scatter * rng.standard_normal((nodes, 6))
 
 
-def track(config: Config, target: Reference, law: Any, nominal: RigidBodyModel) -> Recording:
-    """Run the arm along a reference under ``law``, from the configured initial joint error.
+def network(config: Config, centres: Any) -> AdaptiveNetwork:
+    """exp(-|z - c|^2 / 2) at the centres; dW/dt = gain (S delta^T - leakage W)."""
+    gain = config.network.gain
+    return AdaptiveNetwork(
+        Gaussians(centres, np.sqrt(2.0)), 3, gain=gain, leakage=gain * config.network.leakage, step=config.arm.step
+    )
 
-    Records ``error`` e = q_d - q [rad], ``velocity_error`` [rad/s] and ``goal`` (the reference's tip) beside the
-    World's channels.
+
+def law(config: Config, nominal: RigidBodyModel, learner: AdaptiveNetwork | None) -> Any:
+    """The configured law on a nominal model."""
+    return config.law(nominal) if config.law.func is GravityPD else config.law(nominal, learner)
+
+
+def track(config: Config, target: Reference, tracking: Any, nominal: RigidBodyModel) -> Recording:
+    """Run the arm along a reference from the configured initial joint error.
+
+    Records ``desired`` joint angles, ``error`` e = q_d - q [rad] and ``velocity_error`` delta beside the World's
+    channels.
     """
     position, velocity, acceleration = target
-    step, share = config.step, config.contact_estimate
+    step, share = config.arm.step, config.arm.contact_estimate if config.arm.drag else 0.0
 
     def controller(sense: Any) -> Any:
         k = round(sense.time / step)
-        contact = share * nominal.jacobian(sense.position)[:3].T @ sense.force if config.arm.drag else 0.0
-        return law(sense.position, sense.velocity, (position[k], velocity[k], acceleration[k]), contact)
+        contact = share * (sense.force @ nominal.jacobian(sense.position)[:3]) if share else 0.0
+        return tracking(sense.position, sense.velocity, (position[k], velocity[k], acceleration[k]), contact)
 
-    probes = {"velocity_error": lambda: law.velocity_error}
-    with world(config, position[0] - np.array(config.initial_error)) as scene:
-        recording = scene.run((len(position) - 1) * step, {"arm": controller}, probes=probes, on_divergence="stop")
-    count = len(recording.time)
-    recording.series["desired"] = position[:count]
-    recording.series["error"] = position[:count] - recording["arm.position"]
+    probes = {"velocity_error": lambda: tracking.velocity_error}
+    duration = (len(position) - 1) * step
+    with world(config, position[0] - np.array(config.arm.initial_error)) as scene:
+        recording = scene.run(duration, {"arm": controller}, probes=probes, on_divergence="stop")
+    recording.series["desired"] = position[: len(recording.time)]
+    recording.series["error"] = recording["desired"] - recording["arm.position"]
     return recording
 
 
-def bound(config: Config) -> PerformanceBound:
-    return PerformanceBound(**config.bound)
+def quality(recording: Recording, config: Config) -> Metrics:
+    """How the run kept to its reference: share of the bound used, errors from ``SETTLED`` on, torque, Lyapunov value."""
+    time, error, late = recording.time, recording["error"], recording.between(SETTLED)
+    usage = np.abs(config.bound.usage(error, config.bound.nu(time)[:, None])).max(axis=1)
+    tip = np.linalg.norm(pen_arm_tip(recording["desired"]) - recording["arm.tip"], axis=1)
+    torque = recording["arm.torque"]
+    return {
+        "bound_use": float(usage.max()),
+        "outside": float(np.mean(usage > 1)),
+        "error_rms": 1e3 * float(np.sqrt(np.mean(np.sum(error[late] ** 2, axis=1)))),
+        "tip_rms": 1e3 * float(np.sqrt(np.mean(tip[late] ** 2))),
+        "torque_max": float(np.abs(torque).max()),
+        "torque_step": float(np.sqrt(np.mean(np.diff(torque[late], axis=0) ** 2))),
+        **_lyapunov(recording, config),
+    }
+
+
+def _lyapunov(recording: Recording, config: Config) -> Metrics:
+    """rho V_1 + V_2 with the plant's own mass matrix (a measurement, no law sees it), relative to its start."""
+    every = slice(None, None, 20)
+    time, delta = recording.time[every], recording["velocity_error"][every]
+    plant = RigidBodyModel(pen_arm(tool=pen(config.arm.pen_mass)))
+    masses = np.array([plant.mass_matrix(q) for q in recording["arm.position"][every]])
+    kinetic = 0.5 * np.einsum("ni,nij,nj->n", delta, masses, delta)
+    value = config.barrier_weight * barrier(recording["error"][every], config.bound, time) + kinetic
+    if not np.isfinite(value).all():
+        return {"lyapunov_peak": None, "lyapunov_late": None}
+    return {"lyapunov_peak": float(value.max() / value[0]), "lyapunov_late": float(value[time >= 2].max() / value[0])}
