@@ -9,6 +9,7 @@ import numpy as np
 
 from dexrepro.control.bounded_neural import barrier
 from dexrepro.control.gravity_pd import GravityPD
+from dexrepro.control.prescribed_performance import PerformanceBound
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.networks import AdaptiveNetwork, Gaussians
 from dexrepro.physics.elements import JointLoad, TipForce, joint_friction
@@ -123,10 +124,18 @@ def track(config: Config, target: Reference, tracking: Any, nominal: RigidBodyMo
     return recording
 
 
+def bound_use(recording: Recording, config: Config) -> Any:
+    """Largest share of the bound that a joint error uses, (N,); below 1 inside. For live and plain configurations."""
+    bound = config.bound
+    if isinstance(bound, dict):
+        bound = PerformanceBound(**{key: value for key, value in bound.items() if key != "_target_"})
+    return np.abs(bound.usage(recording["error"], bound.nu(recording.time)[:, None])).max(axis=1)
+
+
 def quality(recording: Recording, config: Config) -> Metrics:
     """How the run kept to its reference: share of the bound used, errors from ``SETTLED`` on, torque, Lyapunov value."""
-    time, error, late = recording.time, recording["error"], recording.between(SETTLED)
-    usage = np.abs(config.bound.usage(error, config.bound.nu(time)[:, None])).max(axis=1)
+    error, late = recording["error"], recording.between(SETTLED)
+    usage = bound_use(recording, config)
     tip = np.linalg.norm(pen_arm_tip(recording["desired"]) - recording["arm.tip"], axis=1)
     torque = recording["arm.torque"]
     return {
