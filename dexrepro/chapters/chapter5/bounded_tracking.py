@@ -90,7 +90,7 @@ def _picture(recording: Recording, config: Config) -> Any:
     with scene(config) as world:
         for first in range(0, len(ink), 16):
             world.add_body(f"ink{first}", ink[first : first + 16], (0, 0, 0), collides=False)
-        camera = Camera(target=(0.10, 0.0, -0.06), distance=0.42, yaw=35.0, pitch=-32.0, field_of_view=42.0)
+        camera = Camera(target=(0.10, 0.0, -0.06), distance=0.36, yaw=125.0, pitch=-35.0, field_of_view=42.0)
         return world.render({"arm": recording["arm.position"][-1]}, camera=camera, size=(900, 640))
 
 
@@ -114,7 +114,7 @@ SHOWN = {
     "letter_w": ("corrected", "book"),
     "no_network": ("no network", "rival"),
     "pd": ("PD + gravity", "plain"),
-    "printed_sign": ("printed sign of the network", "printed"),
+    "printed_sign": ("printed sign", "printed"),
 }
 
 
@@ -182,10 +182,15 @@ def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
     return figure
 
 
-LAWS = ("letter_w", "tuned", "no_network", "no_barrier", "no_network_no_barrier", "pd", "pd_stiff", "pd_tuned", "printed",
-        "printed_sign", "printed_gain", "printed_robust", "sign_only")  # fmt: skip
-SENSITIVITY = ("letter_w", "light_model", "heavy_model", "rough_paper", "near_edge", "outside", "encoders", "encoders_slow",
-               "tuned_encoders", "pd_tuned_encoders", "exponential", "exponential_slow", "small_robust", "printed_gain_no_network")  # fmt: skip
+LAWS = (
+    *("letter_w", "tuned", "no_network", "no_barrier", "no_network_no_barrier", "pd", "pd_stiff", "pd_tuned"),
+    *("printed", "printed_sign", "printed_gain", "printed_robust", "sign_only"),
+)
+SENSITIVITY = (
+    *("letter_w", "light_model", "heavy_model", "rough_paper", "near_edge", "outside", "encoders", "encoders_slow"),
+    *("tuned_encoders", "pd_tuned_encoders", "exponential", "exponential_slow", "small_robust"),
+    "printed_gain_no_network",
+)
 
 
 def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:

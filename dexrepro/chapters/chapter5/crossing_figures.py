@@ -20,7 +20,7 @@ def crossings(recording: Recording, metrics: Any, config: Config) -> Any:
     paths, reached = recording.frames["paths"], recording.frames["goals"]
     skills = {b: _lines(paths, "skill", b, colour, 1.6) for b, colour in COLOURS.items()}
     contents: list[tuple[str, int, list[Any]]] = [
-        ("demonstrations and DMP", 1, [_lines(paths, "demonstration", 1, "#999999", 0.6), skills[1]]),
+        ("demonstrations", 1, [_lines(paths, "demonstration", 1, "#999999", 0.6), skills[1]]),
         ("one to three blocks", 3, [*_growth(paths), *skills.values()]),
         ("goals, two blocks", 2, [_lines(paths, "goal", 2, style.RIVAL, 0.8), skills[2]]),
         ("goals, three blocks", 3, [_lines(paths, "goal", 3, style.RIVAL, 0.8), skills[3]]),
@@ -100,7 +100,7 @@ def _side(axes: Any, blocks: int, groups: list[Any]) -> None:
 def _distances(axes: Any, reached: Any) -> None:
     """Smallest clearance [cm] of the paths to the goals at each x."""
     values = " / ".join(f"{group.clearance.min():.2f}" for _, group in reached.groupby("x"))
-    axes.set_title(f"clearance {values} cm", fontsize=6, fontweight="normal")
+    axes.set_title(f"free by {values} cm", fontsize=6, fontweight="normal")
 
 
 def changes(recording: Recording, metrics: Any, config: Config) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -134,6 +135,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
             metrics[f"n{count}.{method}.limit"] = max(float(chosen.limit.max()), 1e-9)  # below is rounding
         metrics[f"n{count}.dmp_plus.beats_dmp"] = _share(errors.dmp_plus < errors.dmp)
         metrics[f"n{count}.ordered"] = _share((errors[best] < errors.dmp_plus) & (errors.dmp_plus < errors.dmp))
+        metrics[f"n{count}.dmp_plus.ratio"] = float((errors.dmp_plus / errors.dmp).median())
         ratios = errors[best] / errors.dmp_plus
         metrics[f"n{count}.{best}.ratio"] = float(ratios.median())
         if config.equal_size:
@@ -155,7 +157,7 @@ def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
     for count in config.kernels.counts:
         medians = [default.get(f"n{count}.idmp{m}.mse") for m in config.features.counts]
         if all(value is not None for value in medians):
-            steps = [after / before for before, after in zip(medians, medians[1:])]  # type: ignore[operator]
+            steps = [after / before for before, after in pairwise(medians)]  # type: ignore[operator]
             result[f"largest_step_n{count}"] = max(steps)
     return result
 

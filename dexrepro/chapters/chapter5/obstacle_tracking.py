@@ -70,7 +70,7 @@ def scene(config: Config) -> Any:
     return world
 
 
-CAMERA = Camera(target=(0.13, 0.0, -0.05), distance=0.48, yaw=68.0, pitch=-22.0, field_of_view=40.0)
+CAMERA = Camera(target=(0.12, -0.01, -0.045), distance=0.42, yaw=68.0, pitch=-22.0, field_of_view=40.0)
 
 
 def _film(recording: Recording, config: Config) -> dict[str, Any]:
@@ -130,7 +130,7 @@ def _filmstrip(recordings: Mapping[str, Recording], config: Config) -> Any:
         for k, (axes, time) in enumerate(zip(row, config.film)):
             axes.imshow(recordings[case].images[f"at{k}"])
             axes.set_axis_off()
-            axes.set_title(f"{time:g} s")
+            axes.set_title(f"{case[-1]} blocks, {time:g} s")
     style.title(figure, "The arm carries its pen over two and three blocks")
     return figure
 
@@ -151,7 +151,7 @@ def _draw_runs(recordings: Mapping[str, Recording], metrics: Mapping[str, Metric
     left.set(yscale="log", ylim=(1e-4, 2), xlabel="Time [s]", ylabel="Largest share\nof the bound [-]")
     right.axhline(0, **style.LINES["reference"])
     right.set_xticks(range(9), [f"{x:g}\n{y:g}" for x, y, _ in places])
-    right.set(xlabel="Goal x, y [cm]", ylabel="Clearance of the tip [cm]", ylim=(-0.1, None))
+    right.set(xlabel="Goal x, y [cm]", ylabel="Clearance of the tip [cm]", ylim=(-0.1, 1.6))
     right.legend()
     style.title(figure, "All 18 crossings stay inside the bound and clear of the obstacle")
     return figure

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,8 @@ from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
 from dexrepro.primitives import Demonstration
-from dexrepro.robots.pen_arm import pen, pen_arm
+from dexrepro.robots.arm import Shape, Tool
+from dexrepro.robots.pen_arm import DARK, LENGTH, WHITE, pen, pen_arm
 from dexrepro.robots.pen_kinematics import pen_arm_angles, pen_arm_tip
 
 Reference = tuple[Any, Any, Any]
@@ -58,11 +60,19 @@ def world(config: Config, start: Any) -> World:
     result = World(step=settings.step, perturbation=config.perturbation)
     cutoff = np.inf if settings.velocity_cutoff is None else settings.velocity_cutoff
     sensor = Sensor(encoder_resolution=settings.resolution, velocity_cutoff=cutoff)
-    result.add_arm("arm", pen_arm(tool=pen(settings.pen_mass), effort=settings.torque_limit), start, sensor=sensor)
+    result.add_arm("arm", pen_arm(tool=_pen(settings.pen_mass), effort=settings.torque_limit), start, sensor=sensor)
     result.add(JointLoad("arm", joint_friction(settings.viscous, settings.coulomb)))
     if settings.drag:
         result.add(TipForce("drag", "arm", _drag(settings.drag)))
     return result
+
+
+def _pen(mass: float) -> Tool:
+    """The pen in line with the forearm, which is shown that much shorter; its mass sits at the point."""
+    forearm = Shape.between((-LENGTH, 0, 0), (-0.035, 0, 0), 0.01, WHITE)
+    return replace(
+        pen(mass), shapes=(forearm, Shape.between((-0.035, 0, 0), (0, 0, 0), 0.003, DARK)), replaces=("forearm",)
+    )
 
 
 def _drag(size: float) -> Callable[[float, Any, Any], Any]:
@@ -133,7 +143,7 @@ def bound_use(recording: Recording, config: Config) -> Any:
 
 
 def quality(recording: Recording, config: Config) -> Metrics:
-    """How the run kept to its reference: share of the bound used, errors from ``SETTLED`` on, torque, Lyapunov value."""
+    """How the run kept to its reference: share of the bound used, errors from ``SETTLED`` on, torque, Lyapunov."""
     error, late = recording["error"], recording.between(SETTLED)
     usage = bound_use(recording, config)
     tip = np.linalg.norm(pen_arm_tip(recording["desired"]) - recording["arm.tip"], axis=1)

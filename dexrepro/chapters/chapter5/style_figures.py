@@ -79,7 +79,8 @@ def mixtures(recording: Recording, config: Config) -> Any:
     frame = recording.frames["mixtures"]
     pairs = list(dict.fromkeys(frame.pair))
     shares = sorted(config.interpolation, reverse=True)
-    figure, grid = style.subplots(len(pairs), len(shares), height=1.5 * len(pairs) + 0.4, sharex=True, sharey="row", squeeze=False)  # fmt: skip
+    height = 1.5 * len(pairs) + 0.4
+    figure, grid = style.subplots(len(pairs), len(shares), height=height, sharex=True, sharey="row", squeeze=False)
     for row, pair in zip(grid, pairs):
         for axes, share in zip(row, shares):
             path = frame[(frame.pair == pair) & (frame.share == share)]
