@@ -48,7 +48,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     centres = pen.node_centres(config, target, config.network.nodes, rng("nodes"))
     learner = pen.network(config, centres) if config.network.enabled else None
     recording = pen.track(config, target, pen.law(config, nominal, learner), nominal)
-    if config.picture:
+    if config.picture == config.hand.letter:
         recording.images["picture"] = _picture(recording, config)
     return recording
 
@@ -103,8 +103,8 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     written = [case for case in recordings if case.startswith("letter_")]
     if written:
         figures["5.5b"] = _draw_letters(written, recordings, metrics)
-    if "written" in recordings:
-        figures["5.4"] = _draw_picture(recordings["written"])
+    if "letter_a" in recordings:
+        figures["5.4"] = _draw_picture(recordings["letter_a"])
     if set(SHOWN) <= set(recordings):
         figures["5.D"] = _draw_errors(recordings, metrics, config)
     return figures
@@ -175,10 +175,10 @@ def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
         axes.set_ylabel(text)
     for axes in grid[:, 1:].flat:
         axes.tick_params(labelleft=False)
-    share = metrics["letter_w"]["bound_use"]
+    share = metrics["letter_w"]["bound_use"] or 0.0
     style.title(
         figure, f"With the sign of the network corrected the errors use at most {100 * share:.0f} % of the bound"
-    )  # type: ignore[operator]
+    )
     return figure
 
 

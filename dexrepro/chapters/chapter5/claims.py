@@ -175,8 +175,8 @@ CLAIMS = (
         "Small differences to the demonstrations remain after 30 features.",
         every(*(within(f"{STYLES}.{letter}.final", 0.004, 0.2) for letter in TARGETS)),
         where="5.5.2",
-        note="Between 0.1 and 5 % of the size. The book's cause, a compromise between letters, is not the one here: each "
-        "letter's weights are fitted on their own; the features are random and too few.",
+        note="Between 0.1 and 5 % of the size. The book's cause, a compromise between letters, is not the one here: "
+        "each letter's weights are fitted on their own; the features are random and too few.",
     ),
     Claim(
         "C5.16",
@@ -228,7 +228,7 @@ CLAIMS = (
     Claim(
         "C5.35",
         "5.D",
-        "The network is what makes the tracking accurate: without it the error of the pen is at least ten times larger.",
+        "The network makes the tracking accurate: without it the pen's error is at least ten times larger.",
         greater(f"{TRACKING}.no_network.tip_rms", f"{TRACKING}.letter_w.tip_rms", factor=10.0),
         source="ours",
     ),
@@ -336,8 +336,8 @@ CLAIMS = (
         "The state converges to the goal.",
         every(*(less(f"{ACCURACY}.n{n}.{m}.limit", 1e-3) for n in (5, 20) for m in ("dmp", "idmp60"))),
         where="5.3.1, (5.8)",
-        note="As a limit, measured at ten times the duration. Soon after the end an IDMP without rest in its training data is "
-        "tens of centimetres away (T5.S, no_rest); with rest it is within tenths of a millimetre.",
+        note="As a limit, measured at ten times the duration. Soon after the end an IDMP without rest in its training "
+        "data is tens of centimetres away (T5.S, no_rest); with rest it is within tenths of a millimetre.",
     ),
     Claim(
         "C5.36",

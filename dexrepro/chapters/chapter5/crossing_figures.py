@@ -75,7 +75,7 @@ def _space(axes: Any, blocks: int, groups: list[Any]) -> None:
 
 
 def _box(axes: Any, low: Any, high: Any) -> None:
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
     faces = [

@@ -108,8 +108,8 @@ ERRATA = (
         "E5.13",
         "(5.24), (5.29)",
         "error",
-        "c = Psi^+ Psi Upsilon - Upsilon and d = -Psi^+ Upsilon ask for Psi stored in two ways; the shapes of the first "
-        "do not fit those of the second.",
+        "c = Psi^+ Psi Upsilon - Upsilon and d = -Psi^+ Upsilon ask for Psi stored in two ways; their shapes do not "
+        "fit each other.",
         "c = Psi Psi^+ Upsilon - Upsilon.",
     ),
     Erratum(
@@ -188,8 +188,9 @@ ERRATA = (
         "E5.23",
         "L before (5.39)",
         "reading",
-        "L = -sqrt(1/k_2^2 + 1/k_1^2 + k_c^2) |v'/v| does not give the rate k_c claimed and vanishes once v has reached a "
-        "floor. With a pure exponential it is a constant gain; a radical over the first two terms may have been meant.",
+        "L = -sqrt(1/k_2^2 + 1/k_1^2 + k_c^2) |v'/v| does not give the rate k_c claimed and vanishes once v has "
+        "reached a floor. With a pure exponential it is a constant gain; a radical over the first two terms may have "
+        "been meant.",
         "L = -(k_c + |v'/v|), so that L - v'/v <= -k_c.",
         switch="bounded_tracking.law.virtual_gain=printed",
         evidence=tuple(
@@ -202,8 +203,8 @@ ERRATA = (
         "E5.24",
         "(5.32), (5.47)",
         "gap",
-        "The gradient F of the barrier never enters the torque; (5.47) asks the weight law to dominate it, but the sign "
-        "of that term is indefinite.",
+        "The gradient F of the barrier never enters the torque; (5.47) asks the weight law to dominate it, but the "
+        "sign of that term is indefinite.",
         "+ rho F in the torque.",
         switch="bounded_tracking.law.barrier_gain=0",
         evidence=tuple(f"{TRACKING}.{case}.bound_use" for case in ("no_network", "no_network_no_barrier")),

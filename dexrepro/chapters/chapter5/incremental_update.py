@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -91,7 +92,7 @@ def _printed(matrix: Any, inverse: Any, columns: Any, scalar: bool = False) -> A
 READINGS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "completed": extended_pseudo_inverse,
     "printed": _printed,
-    "scalar": lambda *arguments: _printed(*arguments, scalar=True),
+    "scalar": partial(_printed, scalar=True),
 }
 
 
@@ -188,10 +189,11 @@ def _measure_lemma(frame: pd.DataFrame) -> Metrics:
 
 
 def _measure_maps(frame: pd.DataFrame) -> Metrics:
-    groups = frame.groupby("map")
-    return {f"{name}.changes_sign": float(part.changes_sign.mean()) for name, part in groups} | {
-        f"{name}.least": float(part.least.min()) for name, part in groups
-    }
+    metrics: Metrics = {}
+    for name, part in frame.groupby("map"):
+        metrics[f"{name}.changes_sign"] = float(part.changes_sign.mean())
+        metrics[f"{name}.least"] = float(part.least.min())
+    return metrics
 
 
 def _measure_drift(frame: pd.DataFrame) -> Metrics:

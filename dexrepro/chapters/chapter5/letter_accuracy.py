@@ -83,7 +83,7 @@ def _fit(features: Any, taught: Demonstration, config: Config, estimator: Any = 
     return DMP.fit(taught, features, letters.system(config), config.dmp.decay, scaling, estimator=estimator, **options)
 
 
-def _errors(primitive: DMP, demonstration: Demonstration, config: Config) -> tuple[tuple[float, ...], Any]:
+def _errors(primitive: DMP, demonstration: Demonstration, config: Config) -> tuple[tuple[Any, ...], Any]:
     """Mean squared error, largest distance from the goal within T/2 after T, that at 10 T, largest weight; the path."""
     count, duration = config.dmp.samples, config.dmp.duration
     path = letters.rollout(primitive, config, horizon=1.5 * duration)
@@ -118,7 +118,7 @@ def _typical_paths(draws: pd.DataFrame, runs: list[Any], config: Config) -> pd.D
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
-    draws, metrics = recording.frames["draws"], {}
+    draws, metrics = recording.frames["draws"], Metrics()
     by_count = {}
     for count in config.kernels.counts:
         part = draws[draws.kernels == count]

@@ -108,8 +108,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
         own = quality[(quality.skill == blocks) & (quality.blocks == blocks)]
         metrics[f"skill{blocks}.clearance"] = float(own.clearance.min())
         metrics[f"skill{blocks}.rms"] = float(own.rms.median())
-        steps = changes.xs(blocks, level="blocks")
-        metrics[f"skill{blocks}.last_change"] = float((steps.iloc[:, -1] / steps.iloc[:, 0]).max())
+        steps = changes.xs(blocks, level="blocks").to_numpy()
+        metrics[f"skill{blocks}.last_change"] = float((steps[:, -1] / steps[:, 0]).max())
         metrics[f"skill{blocks}.shrinks_always"] = float(np.mean(np.diff(steps, axis=1).max(axis=1) <= 0))
         part = reached[reached.blocks == blocks]
         metrics[f"goals{blocks}.clearance"] = float(part.clearance.min())

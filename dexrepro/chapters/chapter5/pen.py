@@ -151,12 +151,16 @@ def quality(recording: Recording, config: Config) -> Metrics:
     return {
         "bound_use": float(usage.max()),
         "outside": float(np.mean(usage > 1)),
-        "error_rms": 1e3 * float(np.sqrt(np.mean(np.sum(error[late] ** 2, axis=1)))),
-        "tip_rms": 1e3 * float(np.sqrt(np.mean(tip[late] ** 2))),
+        "error_rms": _rms(1e3 * np.linalg.norm(error[late], axis=1)),
+        "tip_rms": _rms(1e3 * tip[late]),
         "torque_max": float(np.abs(torque).max()),
-        "torque_step": float(np.sqrt(np.mean(np.diff(torque[late], axis=0) ** 2))),
+        "torque_step": _rms(np.diff(torque[late], axis=0)),
         **_lyapunov(recording, config),
     }
+
+
+def _rms(values: Any) -> float | None:
+    return float(np.sqrt(np.mean(values**2))) if values.size else None
 
 
 def _lyapunov(recording: Recording, config: Config) -> Metrics:
@@ -169,4 +173,8 @@ def _lyapunov(recording: Recording, config: Config) -> Metrics:
     value = config.barrier_weight * barrier(recording["error"][every], config.bound, time) + kinetic
     if not np.isfinite(value).all():
         return {"lyapunov_peak": None, "lyapunov_late": None}
-    return {"lyapunov_peak": float(value.max() / value[0]), "lyapunov_late": float(value[time >= 2].max() / value[0])}
+    late = value[time >= 2]
+    return {
+        "lyapunov_peak": float(value.max() / value[0]),
+        "lyapunov_late": float(late.max() / value[0]) if late.size else None,
+    }

@@ -41,7 +41,7 @@ PAIRS = (("w", "z"), ("k", "l"))
 def simulate(config: Config, rng: Any) -> Recording:
     hand, generator = rng("demonstration"), rng("features")
     shown = {name: letters.demonstration(name, config, hand) for name in (config.hand.base, *config.hand.targets)}
-    rows, kept = [], {}
+    rows, kept = [], {}  # type: list[Any], dict[tuple[str, int], DMP]
     for draw in range(config.features.draws):
         learned = _learn(shown, config, generator)
         for (letter, m), primitive in learned.items():
