@@ -238,6 +238,7 @@ CLAIMS = (
         "Learned weights can be accumulated and reused: later letters begin with smaller errors.",
         every(*(less(f"{REUSE}.kept.{letter}.early", f"{REUSE}.anew.{letter}.early") for letter in TARGETS)),
         where="5.4.2, 5.5.4",
+        note="With the corrected law; under the printed sign of the network nothing is learned (C5.19).",
     ),
     Claim(
         "C5.21",
@@ -308,6 +309,7 @@ CLAIMS = (
             less("obstacle_tracking.largest_bound_use", 1.0),
             greater("obstacle_tracking.least_clearance", 0.0),
         ),
+        printed=less("obstacle_tracking.printed.bound_use", 1.0),
         where="5.5.3",
     ),
     Claim(
@@ -318,6 +320,7 @@ CLAIMS = (
             less(f"{TRACKING}.letter_w.lyapunov_peak", 1.01),
             less(f"{TRACKING}.letter_w.lyapunov_late", 0.05),
         ),
+        printed=less(f"{TRACKING}.printed.bound_use", 1.0),
         where="(5.50)",
         note="rho V_1 + V_2 with the plant's own mass matrix; the term of the weights needs the unknown best weights. "
         "Under the printed law the errors leave its domain.",

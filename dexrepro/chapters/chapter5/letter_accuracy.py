@@ -236,6 +236,7 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
     rows = [
         {"variant": case, "kernels": count, **{column: values.get(f"n{count}.{column}") for column in columns}}
         for case, values in metrics.items()
+        if case in recordings
         for count in config.kernels.counts
     ]
     tables["T5.S"] = pd.DataFrame(rows)
