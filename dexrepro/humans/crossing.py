@@ -32,9 +32,14 @@ def via_points(blocks: int, clearance: float, plateau: float) -> Array:
 
 
 def clearance(path: Array, blocks: int) -> Array:
-    """Signed distance (..., N) [cm] of points (..., N, 3) from the obstacle; negative inside."""
+    """Signed distance (..., N) [cm] of points (..., N, 3) from the obstacle; negative inside.
+
+    The stack is taken to go on below the table, so that a path along the table is well inside, not on its face.
+    """
     distances = []
     for low, high in obstacle_boxes(blocks):
+        if low[2] == 0:
+            low = low - [0.0, 0.0, 100.0]
         outside = np.maximum(low - path, path - high)
         distances.append(np.linalg.norm(np.maximum(outside, 0.0), axis=-1) + np.minimum(outside.max(axis=-1), 0.0))
     return np.minimum(*distances)

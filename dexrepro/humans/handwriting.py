@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,8 @@ _START, _END = (0.0, 0.35), (1.0, 0.25)  # shared by the lower-case letters
 
 LETTERS: dict[str, tuple[tuple[float, float], ...]] = {
     "A": (
-        (0.0, 0.0), (0.25, 0.52), (0.5, 1.0), (0.74, 0.5), (1.0, 0.0), (0.62, 0.28), (0.16, 0.36), (0.5, 0.37), (0.9, 0.36),
+        (0.0, 0.0), (0.25, 0.52), (0.5, 1.0), (0.74, 0.5), (1.0, 0.0), (0.62, 0.28), (0.16, 0.36), (0.5, 0.37),
+        (0.9, 0.36),
     ),
     "a": (
         _START, (0.35, 0.72), (0.66, 0.82), (0.40, 0.98), (0.12, 0.62), (0.14, 0.2), (0.42, 0.02), (0.66, 0.36),
@@ -47,7 +49,7 @@ def via_path(points: Sequence[Sequence[float]] | Array, time: Array) -> Array:
     """
     points = np.asarray(points, dtype=float)
     passage = np.append(0.0, np.cumsum(np.sqrt(np.linalg.norm(np.diff(points, axis=0), axis=1))))
-    rest = [(1, np.zeros(points.shape[1])), (2, np.zeros(points.shape[1]))]
+    rest: Any = [(1, np.zeros(points.shape[1])), (2, np.zeros(points.shape[1]))]
     return make_interp_spline(passage / passage[-1] * time[-1], points, k=5, bc_type=(rest, rest))(time)
 
 

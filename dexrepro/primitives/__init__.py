@@ -9,23 +9,33 @@
 
 from .demonstration import Demonstration
 from .dmp import DMP, OnlineDMP, Propagator, Scaling, Trajectory, forcing_target
+from .incremental import Blocks, ExtendedKernels, extend, extend_styles, interpolate, original
 from .kernels import FeatureMap, GaussianKernels, TruncatedKernels, phase
+from .pseudo_inverse import GrowingRegression, extended_pseudo_inverse
 from .regression import least_squares, locally_weighted
 from .spring_damper import SpringDamper
 
 __all__ = [
     "DMP",
+    "Blocks",
     "Demonstration",
+    "ExtendedKernels",
     "FeatureMap",
     "GaussianKernels",
+    "GrowingRegression",
     "OnlineDMP",
     "Propagator",
     "Scaling",
     "SpringDamper",
     "Trajectory",
     "TruncatedKernels",
+    "extend",
+    "extend_styles",
+    "extended_pseudo_inverse",
     "forcing_target",
+    "interpolate",
     "least_squares",
     "locally_weighted",
+    "original",
     "phase",
 ]

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .demonstration import Demonstration
-from .kernels import FeatureMap, GaussianKernels, phase
-from .regression import least_squares, locally_weighted
+from .kernels import FeatureMap, GaussianKernels, TruncatedKernels, phase
+from .regression import least_squares, locally_weighted, locally_weighted_affine
 from .spring_damper import SpringDamper
 
 Array = NDArray[Any]
@@ -126,7 +126,7 @@ class DMP:
 
         scaling: None means A = 1; time_constant: tau [s], the demonstration's duration unless given;
         rest: share of the duration for which the training data stay at the goal afterwards, so that the forcing term is
-        also learned to vanish there; estimator "lwr" is for Gaussian kernels alone.
+        also learned to vanish there; estimator "lwr": locally weighted regression, for the plain kernels and for DMP+.
         """
         scaling = Scaling.none(demonstration.position.shape[1]) if scaling is None else scaling
         tau = demonstration.duration if time_constant is None else time_constant
@@ -135,9 +135,7 @@ class DMP:
         phases = phase(samples.time - samples.time[0], tau, decay)
         target = forcing_target(samples, system, tau, goal) / _nonzero(scaling.amplitude(start, goal))
         if estimator == "lwr":
-            if not isinstance(features, GaussianKernels):
-                raise TypeError("locally weighted regression needs Gaussian kernels: use least squares instead")
-            weights = locally_weighted(features, phases, target)
+            weights = _local_weights(features, phases, target)
         else:
             weights = least_squares(features.features(phases), target, rcond, ridge)
         return cls(features, weights, start, goal, system, scaling, tau, decay, samples.velocity[0])
@@ -240,6 +238,14 @@ def forcing_target(demonstration: Demonstration, system: SpringDamper, time_cons
         time_constant**2 * demonstration.acceleration,
         goal,
     )
+
+
+def _local_weights(features: FeatureMap, phases: Array, target: Array) -> Array:
+    if isinstance(features, GaussianKernels):
+        return locally_weighted(features, phases, target)
+    if isinstance(features, TruncatedKernels):
+        return locally_weighted_affine(features, phases, target)
+    raise TypeError("locally weighted regression needs Gaussian kernels: use least squares instead")
 
 
 def _nonzero(amplitude: Array) -> Array:

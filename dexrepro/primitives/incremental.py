@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from scipy.special import expit
 from .demonstration import Demonstration
 from .dmp import DMP, forcing_target
 from .kernels import FeatureMap, GaussianKernels, phase
+from .pseudo_inverse import extended_pseudo_inverse
 from .regression import least_squares
 
 Array = NDArray[Any]
@@ -100,19 +101,25 @@ def extend_styles(
     relearn_old: bool = True,
     rest: float = 0.0,
     rcond: float = 1e-10,
+    ridge: float = 0.0,
+    update: Literal["exact", "printed_start", "row_wise", "scalar"] = "exact",
 ) -> list[DMP]:
     """Learn several new skills on shared features from one old skill, by one least-squares problem; Eqs. (5.26)-(5.29).
 
     The weights of the old skill stay inside the new ones. relearn_old: fit theta_C and theta_U; otherwise theta_U
-    alone, which changes the skill gradually as features are added. rest: as for ``DMP.fit``.
+    alone, which changes the skill gradually as features are added. rest, rcond, ridge: as for ``DMP.fit``. update:
+    exact least squares of Delta f, or, for theta_C and theta_U together, one of the readings of ``lemma_weights``.
     """
     if primitive.features is not features.base:
         raise ValueError("the features must extend those of the old skill: give them as base")
     targets = [_change_target(primitive, demonstration, rest) for demonstration in demonstrations]
     phases = targets[0][0]
-    design = features.blocks(phases).change
+    blocks, wanted = features.blocks(phases), np.concatenate([target for _, target in targets], axis=1)
     skip = 0 if relearn_old else features.kernels.count
-    solved = least_squares(design[:, skip:], np.concatenate([target for _, target in targets], axis=1), rcond)
+    if update == "exact":
+        solved = least_squares(blocks.change[:, skip:], wanted, rcond, ridge)
+    else:
+        solved = lemma_weights(blocks, wanted, update, rcond)
     dimensions = primitive.weights.shape[1]
     frozen = np.zeros((skip, dimensions))
     return [
@@ -125,6 +132,25 @@ def extend_styles(
         )
         for k, demonstration in enumerate(demonstrations)
     ]
+
+
+def lemma_weights(
+    blocks: Blocks, target: Array, reading: Literal["printed_start", "row_wise", "scalar"], rcond: float = 1e-10
+) -> Array:
+    """theta_C and theta_U (n + m, k) as Eqs. (5.24), (5.29) have them: the lemma with A = Psi and a = -Upsilon.
+
+    Gamma / (1 - Gamma) stands before Delta f: sample by sample ("row_wise"; this minimises a weighted residual), or as
+    one number, its mean ("scalar"). theta_C starts from Psi^+ [Gamma / (1 - Gamma) Delta f]; the print leaves the
+    factor, which is negative, out of it ("printed_start").
+    """
+    factor = 1 / (blocks.share - 1)
+    scaled = (factor.mean() if reading == "scalar" else factor) * target
+    inverse = np.linalg.pinv(blocks.kernels, rcond=rcond)
+    start = inverse @ (target if reading == "printed_start" else scaled)
+    extended = extended_pseudo_inverse(blocks.kernels, inverse, -blocks.enhancement)
+    return np.concatenate([start - inverse @ scaled, np.zeros((blocks.enhancement.shape[1], target.shape[1]))]) + (
+        extended @ scaled
+    )
 
 
 def extend(primitive: DMP, features: ExtendedKernels, demonstration: Demonstration, **options: Any) -> DMP:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .kernels import GaussianKernels
+from .kernels import GaussianKernels, TruncatedKernels
 
 Array = NDArray[Any]
 
@@ -33,5 +33,15 @@ def least_squares(features: Array, target: Array, rcond: float = 1e-10, ridge: f
 
 def locally_weighted(kernels: GaussianKernels, phases: Array, target: Array) -> Array:
     """Locally weighted regression, one kernel at a time: w_i = sum phi_i s f / sum phi_i s^2, shape (..., n, k)."""
-    activations = np.swapaxes(kernels.activations(phases), -1, -2)
+    activations = np.exp(kernels.exponents(phases))
     return (activations @ (phases[:, None] * target)) / (activations @ phases**2)[..., None]
+
+
+def locally_weighted_affine(truncated: TruncatedKernels, phases: Array, target: Array) -> Array:
+    """The same for DMP+: each kernel's own w_i s + b_i, weights [w; b] of shape (2 n, k) for a target (N, k)."""
+    share = truncated.features(phases)[:, truncated.kernels.count :]
+    affine = np.stack([phases, np.ones_like(phases)], axis=1)
+    pairs = [
+        np.linalg.lstsq(np.sqrt(w)[:, None] * affine, np.sqrt(w)[:, None] * target, rcond=1e-12)[0] for w in share.T
+    ]
+    return np.concatenate(np.swapaxes(pairs, 0, 1))

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from scipy.interpolate import make_interp_spline
 
 from dexrepro.primitives import (
     DMP,
@@ -188,3 +189,19 @@ def test_a_perturbed_online_movement_still_converges():
             online.position = online.position + [1.0, 1.0]
         online.step()
     assert np.linalg.norm(online.position - online.goal) < 0.05
+
+
+@pytest.mark.parametrize("at_rest", [True, False])
+def test_derivatives_are_those_of_the_quintic_spline(at_rest):
+    time = np.linspace(1.0, 3.0, 81)
+    path = np.random.default_rng(2).normal(size=(81, 2))
+    demonstration = Demonstration.of(time, path, at_rest)
+    rest = [(1, np.zeros(2)), (2, np.zeros(2))]
+    spline = make_interp_spline(time, path, k=5, bc_type=(rest, rest) if at_rest else None)
+    np.testing.assert_allclose(demonstration.velocity, spline(time, 1), atol=1e-9)
+    np.testing.assert_allclose(demonstration.acceleration, spline(time, 2), atol=1e-7)
+
+
+def test_unequal_steps_are_refused():
+    with pytest.raises(ValueError, match="equally spaced"):
+        Demonstration.of(np.linspace(0, 1, 20) ** 2, np.zeros((20, 2)))
