@@ -14,7 +14,7 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True)
 class Polygon:
-    """A simple polygon; vertices of shape (n, 2) in order."""
+    """A simple polygon, or one for each run: vertices of shape (..., n, 2) in order."""
 
     vertices: Array
 
@@ -26,10 +26,10 @@ class Polygon:
 
     @property
     def centroid(self) -> Array:
-        """Centre of area, shape (2,)."""
-        a, b = self.vertices, np.roll(self.vertices, -1, axis=0)
-        cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-        return (cross[:, None] * (a + b)).sum(0) / (3 * cross.sum())
+        """Centre of area, shape (..., 2)."""
+        a, b = self.vertices, np.roll(self.vertices, -1, axis=-2)
+        cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+        return (cross[..., None] * (a + b)).sum(-2) / (3 * cross.sum(-1)[..., None])
 
     def closest(self, points: ArrayLike) -> Array:
         """Closest boundary points to points of shape (..., 2), same shape."""
@@ -47,14 +47,14 @@ class Polygon:
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether points of shape (..., 2) lie inside (ray casting)."""
         p = np.asarray(points, float)[..., None, :]
-        a, b = self.vertices, np.roll(self.vertices, -1, axis=0)
-        straddles = (a[:, 1] > p[..., 1]) != (b[:, 1] > p[..., 1])
-        height = np.where(a[:, 1] == b[:, 1], 1.0, b[:, 1] - a[:, 1])
-        crossing = a[:, 0] + (p[..., 1] - a[:, 1]) * (b[:, 0] - a[:, 0]) / height
+        a, b = self.vertices, np.roll(self.vertices, -1, axis=-2)
+        straddles = (a[..., 1] > p[..., 1]) != (b[..., 1] > p[..., 1])
+        height = np.where(a[..., 1] == b[..., 1], 1.0, b[..., 1] - a[..., 1])
+        crossing = a[..., 0] + (p[..., 1] - a[..., 1]) * (b[..., 0] - a[..., 0]) / height
         return (straddles & (p[..., 0] < crossing)).sum(-1) % 2 == 1
 
     def boundary(self, count: int) -> Array:
-        """Points at equal spacing along the boundary, shape (count, 2)."""
+        """Points at equal spacing along the boundary of a single polygon, shape (count, 2)."""
         closed = np.vstack([self.vertices, self.vertices[:1]])
         length = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
         at = np.arange(count) * length[-1] / count
@@ -63,7 +63,7 @@ class Polygon:
     def _feet(self, points: ArrayLike) -> Array:
         """Closest point on every edge, shape (..., n, 2)."""
         p = np.asarray(points, float)[..., None, :]
-        a, edge = self.vertices, np.roll(self.vertices, -1, axis=0) - self.vertices
+        a, edge = self.vertices, np.roll(self.vertices, -1, axis=-2) - self.vertices
         along = ((p - a) * edge).sum(-1) / (edge * edge).sum(-1)
         return a + np.clip(along, 0, 1)[..., None] * edge
 

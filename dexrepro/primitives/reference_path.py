@@ -24,14 +24,13 @@ def chord_length(points: ArrayLike) -> Array:
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
 
 
-def differentiable(time: ArrayLike, points: ArrayLike, at: ArrayLike, start: ArrayLike | None = None) -> Reference:
+def differentiable(time: Array, points: Array, at: Array, start: Array | None = None) -> Reference:
     """Twice differentiable reference through samples: a cubic spline over time that ends at rest.
 
     The stabilising function needs the acceleration of x^c (Assumption 6.2). ``start`` is the initial velocity
     (default: at rest).
     """
-    points = np.asarray(points, float)
-    first = np.zeros_like(points[0]) if start is None else np.asarray(start, float)
+    first = np.zeros_like(points[0]) if start is None else start
     spline = CubicSpline(time, points, bc_type=((1, first), (1, np.zeros_like(points[0]))))
     return Reference(spline(at), spline(at, 1), spline(at, 2))
 
@@ -66,9 +65,12 @@ def _arrival(nodes: Array, point: Array) -> float:
 
 
 def lagrange(parameter: Array, nodes: Array, at: Array) -> Array:
-    """Global interpolating polynomial through nodes (n, d): the book's example of an interpolation (Runge oscillation)."""
+    """Global interpolating polynomial through nodes (n, d), the book's example; it oscillates with many nodes."""
     gaps = parameter[:, None] - parameter[None, :] + np.eye(len(parameter))
     basis = np.array(
-        [np.prod(np.delete(at[:, None] - parameter, i, axis=1) / np.delete(gaps[i], i), axis=1) for i in range(len(nodes))]
+        [
+            np.prod(np.delete(at[:, None] - parameter, i, axis=1) / np.delete(gaps[i], i), axis=1)
+            for i in range(len(nodes))
+        ]
     )
     return basis.T @ nodes
