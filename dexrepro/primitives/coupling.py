@@ -42,7 +42,7 @@ def dynamic_potential(
     power: float,
     step: float = 1e-5,
 ) -> Array:
-    """[39]: minus the gradient of lambda (-cos theta)^beta |v| / distance, theta between v and the way off the obstacle.
+    """[39]: minus the gradient of lambda (-cos theta)^beta |v| / distance, theta from v to the way off the obstacle.
 
     position, velocity: (..., 2); closest: closest obstacle point of positions, same shape. The gradient is numerical,
     because the closest point moves along with the position.
