@@ -85,7 +85,8 @@ class Constraint:
     def share(self, z1: Array) -> Array:
         """B, the barrier's share of the gain k_n, shape (..., 1), or (..., d) for an asymmetric constraint."""
         square, bound = self._squares(z1)
-        return np.asarray(self.weight / (bound - square) if self.inside else self.weight * bound / (square - bound))
+        gap = np.maximum(bound - square if self.inside else square - bound, 1e-15 * bound)  # not below rounding
+        return np.asarray(self.weight / gap if self.inside else self.weight * bound / gap)
 
 
 def printed_case_two_pull(z1: Array, lower: float, upper: float) -> Array:

@@ -54,6 +54,7 @@ class Moment:
     nominal: Array | float  # the unconstrained primitive's at this instant
     previous: Array | float  # the one applied one step ago
     stabiliser_rate: Array  # d(alpha_2)/dt
+    decay: Array  # k_n z2
     error: Array  # e
     error_rate: Array  # de/dt
     reference_acceleration: Array
@@ -62,33 +63,16 @@ class Moment:
     time_constant: float | Array
 
 
-# A law gives the part of dv/dt that does not contain k_n, and the factor before k_n z2.
-Law = Callable[[Moment], tuple[Array, float]]
+@dataclass(frozen=True)
+class Law:
+    """dv/dt = base(moment) + share k_n z2, the second term taken implicitly.
 
+    barrier: whether the law uses the barrier at all, and is undefined where the constraint is violated.
+    """
 
-def consistent(now: Moment) -> tuple[Array, float]:
-    """(6.13) with the acceleration read as the primitive's at the present state; the primitive cancels."""
-    return now.stabiliser_rate, 1.0
-
-
-def printed(now: Moment) -> tuple[Array, float]:
-    """(6.14), (6.15) taken literally: the acceleration on both sides, solved for it."""
-    return 0.5 * (now.own + now.stabiliser_rate), 0.5
-
-
-def lagged(now: Moment) -> tuple[Array, float]:
-    """(6.15) with the acceleration of the previous step; unstable for every step length."""
-    return now.own + now.stabiliser_rate - now.previous, 1.0
-
-
-def feedforward(now: Moment) -> tuple[Array, float]:
-    """(6.13) with the acceleration of the learned path (6.12) as a function of time."""
-    return now.own + now.stabiliser_rate - now.nominal, 1.0
-
-
-def unconstrained(now: Moment) -> tuple[Array, float]:
-    """The primitive alone, (6.1)."""
-    return now.own, 0.0
+    base: Callable[[Moment], Array]
+    share: float
+    barrier: bool = True
 
 
 @dataclass(frozen=True)
@@ -97,7 +81,7 @@ class SafetyFilter:
 
     rates: tuple[float, float] = (10.0, 10.0)
 
-    def __call__(self, now: Moment) -> tuple[Array, float]:
+    def __call__(self, now: Moment) -> Array:
         sign = 1.0 if now.inside else -1.0
         p1, p2 = self.rates
         free = now.reference_acceleration - now.own / now.time_constant
@@ -106,16 +90,26 @@ class SafetyFilter:
         slack_rate = -2 * sign * _dot(e, rate)
         need = -2 * sign * (_dot(rate, rate) + _dot(e, free)) + (p1 + p2) * slack_rate + p1 * p2 * slack
         direction = 2 * sign * e / now.time_constant
-        return now.own + np.maximum(-need, 0) * direction / (_dot(direction, direction) + 1e-300), 0.0
+        return now.own + np.maximum(-need, 0) * direction / (_dot(direction, direction) + 1e-300)
+
+
+def safety_filter(rates: tuple[float, float] = (10.0, 10.0)) -> Law:
+    """The law of :class:`SafetyFilter` with the rates p1, p2 [1/s]."""
+    return Law(SafetyFilter(rates), 0.0, barrier=False)
 
 
 LAWS: dict[str, Law] = {
-    "consistent": consistent,
-    "printed": printed,
-    "lagged": lagged,
-    "feedforward": feedforward,
-    "filter": SafetyFilter(),
-    "none": unconstrained,
+    # (6.13) with the acceleration read as the primitive's at the present state; the primitive cancels.
+    "consistent": Law(lambda now: now.stabiliser_rate, 1.0),
+    # (6.14), (6.15) taken literally: the acceleration stands on both sides; solved for it.
+    "printed": Law(lambda now: 0.5 * (now.own + now.stabiliser_rate), 0.5),
+    # (6.15) with the acceleration of the step before; explicit, and unstable for every step length.
+    "lagged": Law(lambda now: now.own + now.stabiliser_rate + now.decay - now.previous, 0.0),
+    # (6.13) with the acceleration of the learned path (6.12) as a function of time.
+    "feedforward": Law(lambda now: now.own + now.stabiliser_rate - now.nominal, 1.0),
+    "filter": safety_filter(),
+    # The primitive alone, (6.1).
+    "none": Law(lambda now: now.own, 0.0, barrier=False),
 }
 
 
@@ -131,7 +125,7 @@ class Path:
     distance: Array
     lyapunov: Array
     projected: NDArray[np.bool_]
-    filtered: NDArray[np.bool_]
+    altered: NDArray[np.bool_]
 
     @property
     def defined(self) -> NDArray[np.bool_]:
@@ -144,7 +138,7 @@ def rollout(
     constraint: Constraint,
     gains: Gains,
     law: Law,
-    dt: float,
+    dt: float | Array,
     position: Array,
     velocity: Array,
     projection: float | None = None,
@@ -159,23 +153,26 @@ def rollout(
     x, v = np.array(position, float), np.array(velocity, float)
     margin = np.asarray(constraint.upper) / gains.position
     positions, velocities = np.empty((count, *x.shape)), np.empty((count, *x.shape))
-    projected, filtered = np.zeros((count, *x.shape[:-1]), bool), np.zeros((count, *x.shape[:-1]), bool)
+    projected, altered = np.zeros((count, *x.shape[:-1]), bool), np.zeros((count, *x.shape[:-1]), bool)
     previous: Array | float = 0.0
+    unguarded = not np.any(constraint.weight)
     for k in range(count):
         positions[k], velocities[k] = x, v
         if k == count - 1:
             break
-        now, stabiliser = _moment(k, x, v, skill, reference, constraint, gains, margin, previous)
-        base, factor = law(now)
-        if factor:
-            held = constraint.satisfied(gains.position * now.error)
+        now, stabiliser, kn = _moment(k, x, v, skill, reference, constraint, gains, margin, previous)
+        if law.barrier:
+            held = constraint.satisfied(gains.position * now.error) | unguarded
             if not held.all():
                 x, v = np.where(held[..., None], x, np.nan), np.where(held[..., None], v, np.nan)
-            implicit = dt * factor * gains.velocity * gain(gains.position * now.error, constraint, gains, 1 / tau)
+        base = law.base(now)
+        if law.share:
+            implicit = dt * law.share * gains.velocity * kn
             after = (v + dt * base + implicit * (stabiliser + dt * now.stabiliser_rate)) / (1 + implicit)
         else:
-            filtered[k] = (base != now.own).any(axis=-1)
             after = v + dt * base
+        if not law.barrier:
+            altered[k] = (base != now.own).any(axis=-1)
         moved = x + dt * after / tau
         if projection is not None:
             moved, projected[k + 1] = _project(moved, now.error, reference.position[k + 1], margin, projection)
@@ -183,7 +180,7 @@ def rollout(
         previous = (after - v) / dt
         x, v = moved, after
     return Path(
-        positions, velocities, *_levels(positions, velocities, reference, constraint, gains, tau), projected, filtered
+        positions, velocities, *_levels(positions, velocities, reference, constraint, gains, tau), projected, altered
     )
 
 
@@ -197,30 +194,29 @@ def _moment(
     gains: Gains,
     margin: Array,
     previous: Array | float,
-) -> tuple[Moment, Array]:
-    """What the law sees at instant k, and alpha_2."""
+) -> tuple[Moment, Array, Array]:
+    """What the law sees at instant k, alpha_2 and k_n."""
     tau = skill.time_constant
     error = reference.position[k] - x
     rate = reference.velocity[k] - v / tau
     z1 = gains.position * error
+    pull_rate = constraint.pull_rate(z1, gains.position * rate)
     stabiliser = tau * (reference.velocity[k] - constraint.pull(z1) / gains.velocity)
-    stabiliser_rate = tau * (
-        reference.acceleration[k] - constraint.pull_rate(z1, gains.position * rate) / gains.velocity
-    )
-    nominal = 0.0 if skill.nominal is None else skill.nominal[k]
+    kn = gain(z1, constraint, gains, 1 / tau)
     now = Moment(
-        skill.acceleration(k, x, v),
-        nominal,
-        previous,
-        stabiliser_rate,
-        error,
-        rate,
-        reference.acceleration[k],
-        margin,
-        constraint.inside,
-        tau,
+        own=skill.acceleration(k, x, v),
+        nominal=0.0 if skill.nominal is None else skill.nominal[k],
+        previous=previous,
+        stabiliser_rate=tau * (reference.acceleration[k] - pull_rate / gains.velocity),
+        decay=kn * gains.velocity * (stabiliser - v),
+        error=error,
+        error_rate=rate,
+        reference_acceleration=reference.acceleration[k],
+        margin=margin,
+        inside=constraint.inside,
+        time_constant=tau,
     )
-    return now, stabiliser
+    return now, stabiliser, kn
 
 
 def _project(moved: Array, error: Array, target: Array, margin: Array, rate: float) -> tuple[Array, NDArray[np.bool_]]:

@@ -115,10 +115,10 @@ def test_filter_leaves_the_primitive_alone_inside_and_keeps_the_constraint():
     start = (reference.position[0], reference.velocity[0])
     wide = rollout(skill, reference, Constraint(True, 1e6), GAINS, LAWS["filter"], 1e-3, *start)
     alone = rollout(skill, reference, Constraint(True, 1e6), GAINS, LAWS["none"], 1e-3, *start)
-    assert not wide.filtered.any()
+    assert not wide.altered.any()
     np.testing.assert_array_equal(wide.position, alone.position)
     tight = rollout(skill, reference, Constraint(True, 15.0), GAINS, LAWS["filter"], 1e-3, *start)
-    assert tight.filtered.any()
+    assert tight.altered.any()
     assert alone.distance.max() > 0.1
     assert tight.distance.max() < 0.1 * 1.001
 
