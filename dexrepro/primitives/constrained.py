@@ -223,6 +223,7 @@ def _project(moved: Array, error: Array, target: Array, margin: Array, rate: flo
     """Put positions beyond the discrete barrier back on its sphere about the target."""
     offset = moved - target
     distance = np.sqrt(_dot(offset, offset))
+    margin = margin * (1 - 1e-9)  # rounding must not put a position on the barrier itself
     allowed = margin - (1 - rate) * (margin - np.sqrt(_dot(error, error)))
     over = distance > allowed
     if over.any():
