@@ -18,9 +18,7 @@ class PlanarChain:
     lengths: [m]. masses: [kg]. base: position of the first joint (x, y) [m].
     """
 
-    def __init__(
-        self, lengths: Triple, masses: Triple, base: Point = (0.0, 0.0), functions: ModuleType = math
-    ) -> None:
+    def __init__(self, lengths: Triple, masses: Triple, base: Point = (0.0, 0.0), functions: ModuleType = math) -> None:
         self.lengths, self.base = tuple(lengths), base
         self._sin, self._cos = functions.sin, functions.cos
         self._moments = [

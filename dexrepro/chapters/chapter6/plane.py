@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -56,6 +56,7 @@ def _lesson(config: Config, rng: np.random.Generator) -> Lesson:
     for _ in range(d.count):
         paces = d.duration * (1 + 0.08 * rng.normal(size=2))
         drawings.append(draw(strokes, paces, rng, d.spread, d.tremor))
+    drawings = [replace(w, position=w.position * (1 + config.perturbation)) for w in drawings]
     cuts = [CUTS[config.segmentation](drawing.time, drawing.position) for drawing in drawings]
     halves = []
     for keep in (np.less_equal, np.greater_equal):
@@ -104,3 +105,14 @@ def extended_paths(config: Config, lesson: Lesson, steps: int) -> list[Array]:
         piece = learning.learn(time[::pieces], movement.position[part][::pieces], config.dmp)
         paths.append(piece.rollout(time[-1] / steps, horizon=time[-1], start=start, goal=goal).position)
     return paths
+
+
+def draw_map(axes: Any, config: Config, reference: bool = True) -> None:
+    """Obstacles in orange, the additional block in light blue and the operator's arc, in cm."""
+    old, block = obstacles(config)
+    for polygon in old:
+        axes.fill(*polygon.vertices.T, color="#F3C78D", linewidth=0)
+    axes.fill(*block.vertices.T, color="#A8DCF0", linewidth=0)
+    if reference:
+        axes.plot(*preferred_arc(config).T, "o", color="#0072B2", markersize=1.2)
+    axes.set(aspect="equal", xlim=(0, 20), ylim=(0, 16.3), xlabel="x [cm]")
