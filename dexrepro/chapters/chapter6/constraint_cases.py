@@ -116,7 +116,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     if not config.inside and config.lower is None:
         # z1^2 = z1(0)^2 + 2 (k_z / d_z) t for z2 = 0
         grown = np.sqrt(np.sum(np.square(config.start)) + 2 * config.kz / config.dz * recording.time[-1])
-        metrics["growth_gap"] = float(metrics["end_error"] / grown - 1)  # type: ignore[operator]
+        metrics["growth_gap"] = float(metrics["end_error"] / grown - 1)
     if config.printed:
         metrics["same_sign_undefined"] = float(
             np.isnan(case_two_value(np.array(config.probes), *config.same_sign)).mean()

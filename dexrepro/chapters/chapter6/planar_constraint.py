@@ -20,7 +20,7 @@ FIGURES = {
         "Path of the constrained primitive (law with the recorded acceleration) in its tube, distance to the reference "
         "and V^c for the readings of the law; above with a time constant of the segment's duration, below of 1 s. A "
         "curve ends where its law is no longer defined. The book shows the path alone.",
-        "With the long time constant the stable laws stay in the tube by themselves; with 1 s the barrier is stepped over.",
+        "With the long time constant the stable laws stay in the tube unaided; with 1 s the barrier is stepped over.",
     ),
 }
 TABLES = {

@@ -29,7 +29,7 @@ FIGURES = {
     ),
     "6.2c": Figure(
         "Reference path by extended primitives: sub-skill 1 with its goal moved to the arc's start, sub-skill 2 with "
-        "its start moved to the arc's end; crosses mark samples inside an obstacle. The book reports the same collisions.",
+        "its start moved to the arc's end; crosses mark samples inside an obstacle. The book reports such collisions.",
         "Extending whole sub-skills leads the path through the old obstacles.",
     ),
 }
