@@ -1,9 +1,17 @@
 """Chapter 6: movement primitives that keep constraints by barrier Lyapunov functions."""
 
-from dexrepro.chapters.chapter6 import constraint_cases, planar_constraint, planar_skill, skeleton_constraints
+from dexrepro.chapters.chapter6 import (
+    arm_obstacles,
+    constraint_cases,
+    planar_constraint,
+    planar_skill,
+    skeleton_constraints,
+)
 from dexrepro.experiment import Experiment
 
 TITLE = "Constrained movement primitives"
-EXPERIMENTS = tuple(map(Experiment.of, (constraint_cases, planar_skill, planar_constraint, skeleton_constraints)))
+EXPERIMENTS = tuple(
+    map(Experiment.of, (constraint_cases, planar_skill, planar_constraint, arm_obstacles, skeleton_constraints))
+)
 CLAIMS, REFERENCES = (), ()
 ERRATA = ()

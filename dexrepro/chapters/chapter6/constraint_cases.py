@@ -157,13 +157,13 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         time, error = recording.time, np.linalg.norm(recording["error"], axis=1)
         value = recording["lyapunov"] / recording["lyapunov"][0]
         left.plot(time, value, label=case.replace("_", " "), **style.LINES[name])
-        edge = bound.upper if bound.lower is None or recording["error"][0, 0] > 0 else -bound.lower
-        right.plot(time, error / np.asarray(edge), **style.LINES[name])
+        edges = [bound.upper if bound.lower is None or z > 0 else -bound.lower for z in recording["error"][:, 0]]
+        right.plot(time, error / np.array(edges), **style.LINES[name])
     right.axhline(1, **style.LINES["reference"])
     right.annotate("bound", (0.99, 1), xycoords=("axes fraction", "data"), fontsize=7, ha="right", va="bottom")
     left.set(xlabel="Time [s]", ylabel="$V^c(t)/V^c(0)$", yscale="log", ylim=(1e-6, 3))
     right.set(xlabel="Time [s]", ylabel="$|z_1|/H$", ylim=(0, None))
-    left.legend(loc="lower left", fontsize=6)
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize=6)
     style.panel(left, "a", "Lyapunov function")
     style.panel(right, "b", "Scaled error over its bound")
     hit = metrics.get("asymmetric_outside_printed", {}).get("hit_time")

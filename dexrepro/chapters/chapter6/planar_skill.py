@@ -146,8 +146,9 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         axes.set_ylabel("y [cm]")
         text = _PANELS[identifier](axes, lines, numbers, settings, style)
         style.title(figures[identifier], text)
-        if axes.get_legend_handles_labels()[0]:
-            axes.legend(loc="lower center", bbox_to_anchor=(0.55, 0.0), fontsize=6, facecolor="white", framealpha=0.8)
+        handles = axes.get_legend_handles_labels()
+        if handles[0]:
+            figures[identifier].legend(*handles, loc="outside lower center", ncols=3, fontsize=6)
     return figures
 
 
