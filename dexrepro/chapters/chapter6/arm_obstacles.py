@@ -44,7 +44,7 @@ RATE = 100.0
 BOXES = ("first", "second", "new")
 COLOURS = {"first": (0.95, 0.62, 0.20, 1.0), "second": (0.95, 0.62, 0.20, 1.0), "new": (0.20, 0.50, 0.80, 1.0)}
 TOP = Camera(target=(0.62, -0.32, 0.0), distance=1.15, yaw=0.0, pitch=-89.99, field_of_view=45.0)
-SIDE = Camera(target=(0.5, -0.25, 0.1), distance=1.5, yaw=40.0, pitch=-35.0, field_of_view=45.0)
+SIDE = Camera(target=(0.5, -0.25, 0.1), distance=1.2, yaw=40.0, pitch=-35.0, field_of_view=45.0)
 DOWN = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
 
 
@@ -184,11 +184,11 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         if case in recordings:
             figures[identifier] = _draw_run(recordings[case], metrics[case])
     if {"original", "constrained"} <= set(recordings):
-        figures["6.3"] = _draw_scene(recordings["original"], recordings["constrained"])
+        figures["6.3"] = _draw_scene(recordings["original"], recordings["constrained"], config)
     return figures
 
 
-def _draw_scene(original: Recording, constrained: Recording) -> Any:
+def _draw_scene(original: Recording, constrained: Recording, config: Config) -> Any:
     from dexrepro.report import style
 
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.0)
@@ -199,6 +199,9 @@ def _draw_scene(original: Recording, constrained: Recording) -> Any:
         (constrained, {"color": "#D00000", "linestyle": "--"}),
     ):
         axes.plot(*_pixels(run["desired"], image.shape).T, **line)
+    for name, text in (("first", "old"), ("second", "old"), ("new", "new")):
+        spot = _pixels(np.array(config.boxes[name]), image.shape)
+        axes.annotate(text, spot, xytext=(-30, 0), textcoords="offset points", fontsize=7)
     axes.set(xlim=(0, image.shape[1]), ylim=(image.shape[0], 0))
     axes.axis("off")
     style.title(figure, "From above: learned path (yellow)\nand constrained path (red)")
@@ -228,7 +231,7 @@ def _draw_run(run: Recording, numbers: Metrics) -> Any:
         axes.plot(run.time, 100 * run[f"distance_{name}"], label=f"{name} box", **style.LINES[line])
     axes.axhline(0, **style.LINES["reference"])
     axes.set(xlabel="Time [s]", ylabel="Distance of arm [cm]")
-    axes.legend(loc="upper right")
+    axes.legend(loc="upper center")
     closest = {name: 100 * float(numbers[f"distance_{name}"] or 0) for name in BOXES}
     if closest["new"] < 0:
         text = f"On the learned path the arm runs {-closest['new']:.1f} cm into the new box"
