@@ -89,6 +89,7 @@ def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
     arguments = [quoted(argument) for argument in arguments]
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
+        _check_sweep([argument for argument in arguments if not argument.startswith("-") and "=" in argument])
         return _hydra_run(arguments)
     extra_dir, overrides = _config_dir_option(arguments)
     return run_overrides(overrides, extra_dir)
@@ -145,8 +146,9 @@ def run_overrides(overrides: Sequence[str], extra_dir: str | None = None, worker
     outcome.skipped = skipped
     if not quiet:
         _print_summary(outcome)
-    for name, sentence in outcome.failures.items():
-        err.print(f"{name} failed: {sentence}", markup=False)
+    for sentence, names in outcome.reasons().items():
+        others = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        err.print(f"{names[0]}{others} failed: {sentence}", markup=False)
     return FAILED if outcome.failures else OK
 
 
@@ -202,6 +204,14 @@ def _implied_chapters(overrides: Sequence[str]) -> list[str]:
             raise InputError(f"unknown experiment '{name}': {nearest(name, owner)}")
     named += [key.lstrip("+~").partition(".")[0] for key in values]
     return list(dict.fromkeys(owner[name] for name in named if name in owner))
+
+
+def _check_sweep(overrides: Sequence[str]) -> None:
+    """Refuse what no job of a sweep could use, before Hydra starts any."""
+    from dexrepro.config import check_overrides, compose_chapter
+
+    numbers, rest = chapters_of(overrides)
+    check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
 
 
 def _hydra_run(arguments: list[str]) -> int:

@@ -103,6 +103,13 @@ class Outcome:
     skipped: dict[str, str] = field(default_factory=dict)
     differs: dict[str, list[str]] = field(default_factory=dict)
 
+    def reasons(self) -> dict[str, list[str]]:
+        """What failed, by the sentence that says why."""
+        found: dict[str, list[str]] = {}
+        for name, sentence in self.failures.items():
+            found.setdefault(sentence, []).append(name)
+        return found
+
 
 # -------------------------------------------------------------------------------------------------------- planning
 
