@@ -34,14 +34,17 @@ FRONT = Camera(target=(0.62, 0.0, 0.1), distance=1.7, yaw=-60.0, pitch=-25.0, fi
 WOOD = (0.80, 0.65, 0.45, 1.0)
 
 
-def scene(config: Config) -> World:
-    world = World(step=config.step, perturbation=config.perturbation, iterations=config.iterations)
+def scene(config: Config, place: tuple[float, float, float] = (0.6, 0.0, 0.0)) -> World:
+    """Arms, table and the box on it at x, y [m] and yaw [rad]."""
+    world = World(step=config.physics_step, perturbation=config.perturbation, iterations=config.iterations)
     for side in SIDES:
         world.add_arm(side, _arm(side), np.array(config.posture[side]), contacts=True)
     world.add_box("table", (0.9, 1.4, 0.04), (0.75, 0.0, -0.02), friction=config.table_friction)
+    size = (config.box_depth, config.skeleton.box_length / 100, config.box_depth)
+    x, y, yaw = place
     world.add_body(
-        "box", [Shape("box", (config.box_depth, config.skeleton.box_length / 100, config.box_depth), colour=WOOD)],
-        (0.6, 0.0, config.box_depth / 2), mass=config.box_mass, friction=config.friction, spinningFriction=0.01,
+        "box", [Shape("box", size, colour=WOOD)], (x, y, config.box_depth / 2), (0.0, 0.0, yaw), mass=config.box_mass,
+        friction=config.friction, spinningFriction=0.01,
     )  # fmt: skip
     return world
 
@@ -54,34 +57,33 @@ def simulate(config: Config, rng: Any) -> Recording:
     movement = bimanual.move(config, rng("measurement"))
     wrists = (movement.original if config.original else movement.joints)[:, 0, :, bimanual.WRIST]
     time, tips, turns, ends = _palm_path(config, movement.time, wrists)
-    with scene(config) as world:
+    across = ends[0, 0] - ends[0, 1]
+    place = (*ends[0].mean(axis=0)[:2], float(np.arctan2(-across[0], across[1])))
+    with scene(config, place) as world:
         controllers = {}
         error = 0.0
         for i, side in enumerate(SIDES):
             model = RigidBodyModel(_arm(side))
-            every = round(1 / (config.ik_rate * config.step))
+            every = round(1 / (config.ik_rate * config.physics_step))
             start = solve(_arm(side), tips[0, i], turns[0, i], start=config.posture[side], task="pose")
             joints, left = arms.joint_path(
                 _arm(side), model, time[::every], tips[::every, i], turns[::every, i], "pose", start, config.rest_gain
             )
             world.arm(side).reset(joints(0.0) + config.perturbation)
-            controllers[side] = arms.follow(model, joints, config.frequency, config.step, time[-1])
+            controllers[side] = arms.follow(model, joints, config.frequency, config.physics_step, time[-1])
             error = max(error, left)
-        _put_down(world, ends, config)
         middle = ends.mean(axis=1)
 
         def stop(now: float) -> str | None:
             body = world.bodies["box"]
-            k = min(round(now / config.step), len(middle) - 1)
+            k = min(round(now / config.physics_step), len(middle) - 1)
             gap = np.linalg.norm(np.array((body.x, body.y, body.z)) - middle[k])
             return f"dropped by {now:.2f} s" if gap > config.given_up else None
 
         forces = {f"palm_{side}": lambda side=side: world.contact_force(side, "box") for side in SIDES}
-        run = world.run(
-            time[-1], controllers, probes=forces, stop=stop, record_every=config.record_every
-        )
+        run = world.run(time[-1], controllers, probes=forces, stop=stop, record_every=config.record_every)
         run.images = _pictures(world, run, config)
-    at = np.minimum((run.time / config.step).round().astype(int), len(middle) - 1)
+    at = np.minimum((run.time / config.physics_step).round().astype(int), len(middle) - 1)
     run.series |= {"middle": middle[at], "reference_left": tips[at, 0], "reference_right": tips[at, 1]}
     run.frames["ik"] = pd.DataFrame({"error": [error], "projections": [sum(movement.projections.values())]})
     return run
@@ -94,7 +96,7 @@ def _palm_path(config: Config, time: NDArray[Any], wrists: NDArray[Any]) -> tupl
     """
     person = wrists / 100
     hands = np.stack([person[..., 1], -person[..., 0], person[..., 2]], axis=-1) + np.array(config.origin)
-    fine = config.step * np.arange(round(time[-1] / config.step) + 1)
+    fine = config.physics_step * np.arange(round(time[-1] / config.physics_step) + 1)
     hands = np.stack([[np.interp(fine, time, hands[:, i, a]) for a in range(3)] for i in (0, 1)]).transpose(2, 0, 1)
     inward = np.stack([hands[:, 1] - hands[:, 0], hands[:, 0] - hands[:, 1]], axis=1)
     inward /= np.linalg.norm(inward, axis=-1, keepdims=True)
@@ -102,23 +104,16 @@ def _palm_path(config: Config, time: NDArray[Any], wrists: NDArray[Any]) -> tupl
     up /= np.linalg.norm(up, axis=-1, keepdims=True)
     turns = np.stack([up, np.cross(inward, up), inward], axis=-1)
     tips = hands + config.squeeze * inward
-    steps = round(config.ramp / config.step)
+    steps = round(config.ramp / config.physics_step)
     middle = hands[0].mean(axis=0)
     clear = middle - inward[0] * (config.skeleton.box_length / 200 + 0.004)
     approach = clear + minimum_jerk(np.arange(steps) / steps)[:, None, None] * (tips[0] - clear)
     return (
-        config.step * np.arange(steps + len(fine)),
+        config.physics_step * np.arange(steps + len(fine)),
         np.concatenate([approach, tips]),
         np.concatenate([np.repeat(turns[:1], steps, axis=0), turns]),
         np.concatenate([np.repeat(hands[:1], steps, axis=0), hands]),
     )
-
-
-def _put_down(world: World, ends: NDArray[Any], config: Config) -> None:
-    """Place the box on the table between the hands' first positions."""
-    x, y, _ = ends[0].mean(axis=0)
-    across = ends[0, 0] - ends[0, 1]
-    world.place("box", (x, y, config.box_depth / 2), (0.0, 0.0, float(np.arctan2(-across[0], across[1]))))
 
 
 def _pictures(world: World, run: Recording, config: Config) -> dict[str, NDArray[np.uint8]]:
@@ -160,7 +155,9 @@ def tabulate(
         "min_palm_force": "smallest palm force [N]",
         "tracking_error": "largest palm error [cm]",
     }
-    rows = [{"case": case, **{text: numbers[key] for key, text in columns.items()}} for case, numbers in metrics.items()]
+    rows = [
+        {"case": case, **{text: numbers[key] for key, text in columns.items()}} for case, numbers in metrics.items()
+    ]
     return {"T6.Sd": pd.DataFrame(rows)}
 
 
