@@ -150,7 +150,7 @@ def rollout(
     the law, the step length or the reference; the steps where this happened are marked.
     """
     count, tau = len(reference.position), skill.time_constant
-    x, v = np.array(position, float), np.array(velocity, float)
+    x, v = np.array(position, float, subok=True), np.array(velocity, float, subok=True)
     margin = np.asarray(constraint.upper) / gains.position
     positions, velocities = np.empty((count, *x.shape)), np.empty((count, *x.shape))
     projected, altered = np.zeros((count, *x.shape[:-1]), bool), np.zeros((count, *x.shape[:-1]), bool)

@@ -59,7 +59,7 @@ def dynamic_potential(
 
 def coupled_rollout(skill: Skill, term: Term, dt: float, position: Array, velocity: Array) -> Array:
     """Path (n, ..., d) of a primitive with a term(k, x, v) added to tau dv/dt (semi-implicit Euler)."""
-    x, v = np.array(position, float), np.array(velocity, float)
+    x, v = np.array(position, float, subok=True), np.array(velocity, float, subok=True)
     path = np.empty((len(skill.forcing), *x.shape))
     path[0] = x
     for k in range(len(path) - 1):

@@ -2,8 +2,10 @@
 
 from dexrepro.chapters.chapter6 import (
     arm_obstacles,
+    barrier_anatomy,
     box_carrying,
     constraint_cases,
+    keep_out,
     planar_constraint,
     planar_skill,
     skeleton_constraints,
@@ -18,6 +20,8 @@ EXPERIMENTS = tuple(
             constraint_cases,
             planar_skill,
             planar_constraint,
+            barrier_anatomy,
+            keep_out,
             arm_obstacles,
             skeleton_constraints,
             box_carrying,

@@ -30,7 +30,7 @@ FIGURES = {
 TABLES = {"T6.Sd": "Variants of law, squeeze and joint stiffness in carrying the box"}
 RATE = 100.0
 SIDES = ("left", "right")
-FRONT = Camera(target=(0.62, 0.0, 0.1), distance=1.7, yaw=-60.0, pitch=-25.0, field_of_view=42.0)
+FRONT = Camera(target=(0.62, 0.0, 0.12), distance=1.55, yaw=115.0, pitch=-25.0, field_of_view=42.0)
 WOOD = (0.80, 0.65, 0.45, 1.0)
 
 
@@ -121,7 +121,7 @@ def _pictures(world: World, run: Recording, config: Config) -> dict[str, NDArray
     for i, share in enumerate(config.pictures):
         k = int(share * (len(run.time) - 1))
         arms_at = {side: run[f"{side}.position"][k] for side in SIDES}
-        images[f"{i}_{run.time[k]:.1f}"] = world.render(arms_at, {"box": run["box.pose"][k]}, FRONT, (360, 300))
+        images[f"{i}_{run.time[k]:.1f}"] = world.render(arms_at, {"box": run["box.pose"][k]}, FRONT, (360, 270))
     return images
 
 
@@ -186,6 +186,6 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     right.set(xlabel="Time [s]", ylabel="Smaller palm force [N]")
     left.legend(loc="upper center")
     kept, dropped = metrics["constrained"]["box_error_max"], metrics["original"]["lost_at"]
-    late = f", along the original ones it is lost after {dropped:.1f} s" if dropped else ""
+    late = f",\nalong the original ones it is lost after {dropped:.1f} s" if dropped else ""
     style.title(figure, f"Along constrained paths the box strays {kept:.1f} cm at most{late}")
     return {"6.12": figure}
