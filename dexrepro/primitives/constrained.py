@@ -40,10 +40,10 @@ class Skill:
     damping: float = 25.0
     nominal: Array | None = None
 
-    def acceleration(self, k: int, position: Array, velocity: Array) -> Array:
-        """dv/dt of the primitive alone at instant k, Eq. (6.1)."""
+    def acceleration(self, forcing: Array, position: Array, velocity: Array) -> Array:
+        """dv/dt of the primitive alone, Eq. (6.1)."""
         spring = self.stiffness * (self.goal - position) - self.damping * velocity
-        return (spring + self.forcing[k]) / self.time_constant
+        return (spring + forcing) / self.time_constant
 
 
 @dataclass(slots=True)
@@ -204,7 +204,7 @@ def _moment(
     stabiliser = tau * (reference.velocity[k] - constraint.pull(z1) / gains.velocity)
     kn = gain(z1, constraint, gains, 1 / tau)
     now = Moment(
-        own=skill.acceleration(k, x, v),
+        own=skill.acceleration(skill.forcing[k], x, v),
         nominal=0.0 if skill.nominal is None else skill.nominal[k],
         previous=previous,
         stabiliser_rate=tau * (reference.acceleration[k] - pull_rate / gains.velocity),

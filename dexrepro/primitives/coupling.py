@@ -58,13 +58,27 @@ def dynamic_potential(
 
 
 def coupled_rollout(skill: Skill, term: Term, dt: float, position: Array, velocity: Array) -> Array:
-    """Path (n, ..., d) of a primitive with a term(k, x, v) added to tau dv/dt (semi-implicit Euler)."""
+    """Path (n, ..., d) of a primitive with a term(k, x, v) added to tau dv/dt, by the classical Runge-Kutta method.
+
+    A steering term turns v without braking it; explicit Euler steps would speed it up and blame the term.
+    """
     x, v = np.array(position, float, subok=True), np.array(velocity, float, subok=True)
+    tau = skill.time_constant
     path = np.empty((len(skill.forcing), *x.shape))
     path[0] = x
     for k in range(len(path) - 1):
-        v = v + dt * (skill.acceleration(k, x, v) + term(k, x, v) / skill.time_constant)
-        x = x + dt * v / skill.time_constant
+        first, last = skill.forcing[k], skill.forcing[k + 1]
+        rate_x, rate_v, total_x, total_v = 0.0, 0.0, 0.0, 0.0
+        for forcing, share, weight in (
+            (first, 0.0, 1),
+            ((first + last) / 2, 0.5, 2),
+            ((first + last) / 2, 0.5, 2),
+            (last, 1.0, 1),
+        ):
+            x_at, v_at = x + share * dt * rate_x, v + share * dt * rate_v
+            rate_x, rate_v = v_at / tau, skill.acceleration(forcing, x_at, v_at) + term(k, x_at, v_at) / tau
+            total_x, total_v = total_x + weight * rate_x, total_v + weight * rate_v
+        x, v = x + dt / 6 * total_x, v + dt / 6 * total_v
         path[k + 1] = x
     return path
 
@@ -137,6 +151,6 @@ class SurfaceFollower:
             error = force - self.set_force
             total += error * dt
             correction = np.array([0.0, self.proportional * error + self.integral * total])
-            v = v + dt * (skill.acceleration(k, x, v) + correction / skill.time_constant)
+            v = v + dt * (skill.acceleration(skill.forcing[k], x, v) + correction / skill.time_constant)
             x = x + dt * v / skill.time_constant
         return np.array(path), np.array(forces)

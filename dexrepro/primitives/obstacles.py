@@ -34,19 +34,19 @@ class Polygon:
     def closest(self, points: ArrayLike) -> Array:
         """Closest boundary points to points of shape (..., 2), same shape."""
         feet = self._feet(points)
-        offset = feet - np.asarray(points, float)[..., None, :]
+        offset = feet - np.asanyarray(points, float)[..., None, :]
         nearest = (offset * offset).sum(-1).argmin(-1)
         return np.take_along_axis(feet, nearest[..., None, None], axis=-2)[..., 0, :]
 
     def distance(self, points: ArrayLike) -> Array:
         """Signed distances of points of shape (..., 2), negative inside."""
-        points = np.asarray(points, float)
+        points = np.asanyarray(points, float)
         gap = np.linalg.norm(self.closest(points) - points, axis=-1)
         return np.where(self.contains(points), -gap, gap)
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether points of shape (..., 2) lie inside (ray casting)."""
-        p = np.asarray(points, float)[..., None, :]
+        p = np.asanyarray(points, float)[..., None, :]
         a, b = self.vertices, np.roll(self.vertices, -1, axis=-2)
         straddles = (a[..., 1] > p[..., 1]) != (b[..., 1] > p[..., 1])
         height = np.where(a[..., 1] == b[..., 1], 1.0, b[..., 1] - a[..., 1])
@@ -62,7 +62,7 @@ class Polygon:
 
     def _feet(self, points: ArrayLike) -> Array:
         """Closest point on every edge, shape (..., n, 2)."""
-        p = np.asarray(points, float)[..., None, :]
+        p = np.asanyarray(points, float)[..., None, :]
         a, edge = self.vertices, np.roll(self.vertices, -1, axis=-2) - self.vertices
         along = ((p - a) * edge).sum(-1) / (edge * edge).sum(-1)
         return a + np.clip(along, 0, 1)[..., None] * edge
@@ -77,7 +77,7 @@ class Disk:
 
     def distance(self, points: ArrayLike) -> Array:
         """Signed distances of points of shape (..., 2), negative inside."""
-        return np.linalg.norm(np.asarray(points, float) - self.centre, axis=-1) - self.radius
+        return np.linalg.norm(np.asanyarray(points, float) - self.centre, axis=-1) - self.radius
 
 
 def clearance(path: ArrayLike, obstacles: Iterable[Polygon | Disk]) -> float:

@@ -4,8 +4,12 @@ from dexrepro.chapters.chapter6 import (
     arm_obstacles,
     barrier_anatomy,
     box_carrying,
+    claims,
     constraint_cases,
+    coupled_primitives,
+    errata,
     keep_out,
+    obstacle_terms,
     planar_constraint,
     planar_skill,
     skeleton_constraints,
@@ -17,6 +21,7 @@ EXPERIMENTS = tuple(
     map(
         Experiment.of,
         (
+            coupled_primitives,
             constraint_cases,
             planar_skill,
             planar_constraint,
@@ -25,8 +30,9 @@ EXPERIMENTS = tuple(
             arm_obstacles,
             skeleton_constraints,
             box_carrying,
+            obstacle_terms,
         ),
     )
 )
-CLAIMS, REFERENCES = (), ()
-ERRATA = ()
+CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES
+ERRATA = errata.ERRATA
