@@ -68,7 +68,7 @@ def coupled_rollout(skill: Skill, term: Term, dt: float, position: Array, veloci
     path[0] = x
     for k in range(len(path) - 1):
         first, last = skill.forcing[k], skill.forcing[k + 1]
-        rate_x, rate_v, total_x, total_v = 0.0, 0.0, 0.0, 0.0
+        rate_x = rate_v = total_x = total_v = np.zeros(())
         for forcing, share, weight in (
             (first, 0.0, 1),
             ((first + last) / 2, 0.5, 2),

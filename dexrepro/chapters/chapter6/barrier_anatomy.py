@@ -33,7 +33,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     def largest(step: float, decay: Any, margin: Any, weight: str) -> tuple[NDArray[Any], NDArray[Any]]:
         """Largest distance, and whether the run stayed defined, for arrays of gains or margins (runs, 1)."""
         path = _run(config, primitive, duration, step, np.asarray(decay, float), np.asarray(margin, float), weight)
-        return np.nanmax(path.distance, axis=0), path.defined.all(axis=0)
+        return np.nanmax(path.distance, axis=0), np.asarray(path.defined.all(axis=0))
 
     column = lambda values: np.array(values, float)[:, None]  # noqa: E731
     s, c = config.sweep, config.cdmp

@@ -16,7 +16,7 @@ PLANE = (
         "The demonstrations are cut into the two sub-skills.",
         less(f"{SKILL}.book.segmentation_error_max", 0.3),
         where="6.4.1",
-        note="A change point of a public library replaces the book's BP-AR-HMM; cut at the smallest speed it holds too.",
+        note="A change point of a library replaces the book's BP-AR-HMM; cut at the smallest speed it holds too.",
     ),
     Claim(
         "C6.02",
@@ -70,7 +70,7 @@ PLANE = (
         "The path stays within 0.5 of the reference.",
         every(*(less(f"{LAW}.{law}.e_share", 1.0) for law in ("consistent", "printed", "feedforward"))),
         where="6.4.1, (6.23)",
-        note="With tau equal to the segment's duration; with tau = 1 s only the consistent law or a projection keeps it.",
+        note="With tau = the segment's duration; with tau = 1 s only the consistent law or a projection keeps it.",
     ),
     Claim(
         "C6.07",
@@ -243,7 +243,7 @@ THEORY = (
             ),
         ),
         where="Remark 6.2, 6.3.3",
-        note="Its Lyapunov function has its infimum at an infinite distance: the error grows like sqrt(t), and the path "
+        note="Its Lyapunov function has its infimum at infinity: the error grows like sqrt(t), and the path "
         "stops before the obstacle. The safety filter arrives.",
     ),
 )
@@ -400,7 +400,7 @@ DISCUSSION = (
             *(less(f"{TERMS}.{name}.bars_passed_30mm", 2.5) for name in ("centroid", "closest", "boundary")),
         ),
         where="6.5, point 2",
-    ),  # fmt: skip
+    ),
     Claim(
         "C6.43",
         "6.D",

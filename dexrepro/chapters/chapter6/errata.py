@@ -22,10 +22,10 @@ ERRATA = (
         "E6.02",
         "(6.13)-(6.15)",
         "reading",
-        "(6.15) literally holds the acceleration that it defines. Three readings: the primitive's own acceleration at the "
-        "present state (the proof (6.21) then holds, and the primitive cancels), the literal equation solved for the "
-        "acceleration (an average), the recorded acceleration (6.12) as a function of time. Taken one sample late, it "
-        "diverges for every time step.",
+        "(6.15) literally holds the acceleration that it defines. Three readings: the primitive's own acceleration at "
+        "the present state (the proof (6.21) then holds, and the primitive cancels), the literal equation solved for "
+        "the acceleration (an average), the recorded acceleration (6.12) as a function of time. Taken one sample late, "
+        "it diverges for every time step.",
         "Laws consistent, printed, feedforward and lagged; feedforward gives the path described for Fig. 6.2d.",
         switch="planar_constraint.cdmp.law=printed",
         evidence=(
@@ -39,8 +39,8 @@ ERRATA = (
         "E6.03",
         "(6.17)",
         "error",
-        "The denominator of alpha_2 lacks a factor z1 (possibly lost in print): for z1 < 0 the printed term pushes into "
-        "the forbidden band, and the limit K_1 = 0 contradicts Table 6.2.",
+        "The denominator of alpha_2 lacks a factor z1 (possibly lost in print): for z1 < 0 the printed term pushes "
+        "into the forbidden band, and the limit K_1 = 0 contradicts Table 6.2.",
         "K_2 z1 - K_1 z1^3.",
         switch="constraint_cases.printed=true",
         evidence=(
@@ -76,9 +76,9 @@ ERRATA = (
         "E6.06",
         "(6.9)",
         "reading",
-        "A matter of scaling: a logarithm without unit beside the square of a length. With the printed gains the barrier "
-        "outweighs k_2 only where 1 - (e/h)^2 is below 1e-6 to 3e-5; the tracking gains do the work, and fixed steps "
-        "pass over so thin a layer.",
+        "A matter of scaling: a logarithm without unit beside the square of a length. With the printed gains the "
+        "barrier outweighs k_2 only where 1 - (e/h)^2 is below 1e-6 to 3e-5; the tracking gains do the work, and "
+        "fixed steps pass over so thin a layer.",
         "Barrier weight H^2, or the discrete projection.",
         switch="planar_constraint.cdmp.weight=one",
         evidence=(
@@ -105,8 +105,8 @@ ERRATA = (
         "E6.09",
         "(6.19)-(6.22)",
         "slip",
-        'The derivative of V^1 is negative for v != 0 only, and "V^1 < 0" lacks a dot; convergence to the goal rests on '
-        'Assumption 6.1 (called "assumption 5.1").',
+        'The derivative of V^1 is negative for v != 0 only, and "V^1 < 0" lacks a dot; convergence to the goal rests '
+        'on Assumption 6.1 (called "assumption 5.1").',
         "dV^1/dt <= 0, with LaSalle's argument for v = 0.",
     ),
     Erratum(
@@ -120,15 +120,16 @@ ERRATA = (
         "E6.11",
         "6.3-6.4, labels",
         "slip",
-        '"Condition 6.3" is 6.2; cases 1 and 2 are swapped between the conditions; the lower-bar h bounds from above in '
-        'Condition 6.2; "Part C" is 6.3.3; Fig. 6.10 cites (6.21) for (6.25); three experiments are announced and two exist.',
+        '"Condition 6.3" is 6.2; cases 1 and 2 are swapped between the conditions; the lower-bar h bounds from above '
+        'in Condition 6.2; "Part C" is 6.3.3; Fig. 6.10 cites (6.21) for (6.25); three experiments are announced, '
+        "two exist.",
     ),
     Erratum(
         "E6.12",
         "Table 6.1",
         "gap",
-        "The norm bars in phi are missing (text extraction); the axis is not defined at phi = 0; the phase of [20] depends "
-        "on c_i(x) and is not of the form (6.6).",
+        "The norm bars in phi are missing (text extraction); the axis is not defined at phi = 0; the phase of [20] "
+        "depends on c_i(x) and is not of the form (6.6).",
         "p = 0 at phi = 0, v = tau dx/dt.",
         evidence=("coupled_primitives.distance_waiting.goal_error",),
     ),
@@ -149,7 +150,8 @@ ERRATA = (
         "E6.14",
         "6.4.2, 6.4.1",
         "slip",
-        "The printed range [24, 25] of the hand distance lies outside of 33 +- 1 ([34, 35] would fit the rest); the map "
+        "The printed range [24, 25] of the hand distance lies outside of 33 +- 1 ([34, 35] would fit the rest); the "
+        "map "
         "of 20 x 16 cm is called a square.",
         evidence=(
             "skeleton_constraints.feedforward.hands_constrained_low",
@@ -160,8 +162,8 @@ ERRATA = (
         "E6.15",
         "6.4, gamma = 0.7",
         "reading",
-        "With tau equal to the duration the forcing term is at half its weight at the end, and the path leaves the goal "
-        "afterwards. With tau = 1 s and segments of several seconds, a natural reading too, it hardly does.",
+        "With tau equal to the duration the forcing term is at half its weight at the end, and the path leaves the "
+        "goal afterwards. With tau = 1 s and segments of several seconds, a natural reading too, it hardly does.",
         "Movements end at their duration; both time constants are run.",
         switch="planar_skill.dmp.tau=1.0",
         evidence=("planar_skill.book.late_drift_max", "planar_skill.tau_1s.late_drift_max"),
@@ -184,8 +186,8 @@ ERRATA = (
         "E6.19",
         "6.3.1",
         "reading",
-        "A Lagrange polynomial is named as an example of interpolation; through many nodes it oscillates. Harmless with "
-        "few local nodes.",
+        "A Lagrange polynomial is named as an example of interpolation; through many nodes it oscillates. Harmless "
+        "with few local nodes.",
         "Cubic splines, as in the book's experiment.",
         evidence=("planar_skill.book.lagrange_deviation_max",),
     ),

@@ -210,7 +210,7 @@ def _operations(config: Config, block: Polygon) -> int:
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
-    metrics: Metrics = {name: float(value) for name, value in recording.frames["numbers"].iloc[0].items()}
+    metrics: Metrics = {str(name): float(value) for name, value in recording.frames["numbers"].iloc[0].items()}
     metrics["operations"] = int(metrics["operations"] or 0)
     if "noise" in recording.frames:
         noise = recording.frames["noise"]
@@ -224,8 +224,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "aligned_distance": float(points.distance.iloc[0]),
         "nearly_aligned_distance": float(points.distance.iloc[1:].min()),
     }
-    passed = (bars.clearance > 0).groupby(bars.half_width).sum()
-    return metrics | {f"bars_passed_{10 * width:.0f}mm": int(count) for width, count in passed.items()}
+    for width in config.bars.half_widths:
+        metrics[f"bars_passed_{10 * width:.0f}mm"] = int((bars.clearance[bars.half_width == width] > 0).sum())
+    return metrics
 
 
 def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
