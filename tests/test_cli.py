@@ -110,3 +110,21 @@ def test_diff_names_what_differs(shell: Shell, tmp_path: Path) -> None:
     assert "rest_length" in done.stdout
     assert "metric   movement_estimation.k25." in done.stdout
     assert list((tmp_path / "results/runs").glob("diff-*.png"))
+
+
+def test_a_recorded_run_is_animated_without_simulating(shell: Shell, tmp_path: Path) -> None:
+    assert shell(f"dexrepro run figure=2.7 {SHORT}").returncode == 0
+    folder = next((tmp_path / "results/runs").glob("movement*"))
+    done = shell(f"dexrepro render {folder} case=k35")
+    assert done.returncode == 0, done.stderr
+    assert (folder / "animation/k35.gif").read_bytes()[:4] == b"GIF8"
+    assert "did you mean 'k35'" in shell(f"dexrepro render {folder} case=k36").stderr
+
+
+def test_a_new_controller_comes_with_a_test_that_passes(shell: Shell, tmp_path: Path) -> None:
+    done = shell("dexrepro new controller MyLaw")
+    assert done.returncode == 0, done.stderr
+    assert "my_law.MyLaw" in done.stdout
+    assert shell(f"{sys.executable} -m pytest -q -p no:cacheprovider test_my_law.py").returncode == 0
+    assert "exists already" in shell("dexrepro new controller MyLaw").stderr
+    assert "must be a class name" in shell("dexrepro new controller my-law").stderr
