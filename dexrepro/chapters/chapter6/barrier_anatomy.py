@@ -117,7 +117,8 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         a.plot(share.gap, share.h2, color=style.LINES[line]["color"], linestyle=":", label=f"weight $H^2$, tau = {tau}")
     a.set(xscale="log", xlabel="$1-(\\|e\\|/h)^2$", ylabel="Barrier's share of $k_n$")
     a.invert_xaxis()
-    a.legend(fontsize=6)
+    a.set(ylim=(0, 1.75), yticks=(0, 0.5, 1))
+    a.legend(fontsize=6, ncols=2, loc="upper center", columnspacing=1)
     lines = {
         "consistent": "extra1",
         "printed": "printed",

@@ -171,8 +171,9 @@ ERRATA = (
     Erratum(
         "E6.16",
         "Remark 6.6",
-        "error",
-        "The error is said to grow with k_2 (the authors: not conclusive); it falls under every law.",
+        "gap",
+        "The error is said to grow with k_2 (the authors: not conclusive); map, durations and law behind it are not "
+        "printed. Here it falls under every law and time constant.",
         evidence=("barrier_anatomy.printed.k2_slope", "barrier_anatomy.feedforward.k2_slope"),
     ),
     Erratum(

@@ -167,8 +167,8 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
             run.time, run["distance"][:, 0], label=case.replace("moving_", "").replace("_", ", "), **style.LINES[line]
         )
     right.axhline(shown.radius, **style.LINES["reference"])
-    right.set(xlabel="Time [s]", ylabel="Distance to the centre [cm]", ylim=(0, None))
-    right.legend(loc="upper center", fontsize=6)
+    right.set(xlabel="Time [s]", ylabel="Distance to the centre [cm]", ylim=(0, 9.5))
+    right.legend(loc="upper center", fontsize=6, ncols=2)
     style.panel(left, "a", "still disk")
     style.panel(right, "b", "disk that crosses the path")
     missed = metrics["still_feedforward"]["goal_error"]

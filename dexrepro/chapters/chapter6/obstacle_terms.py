@@ -245,9 +245,8 @@ def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
     rows, bars = [], []
-    for case, numbers in metrics.items():
-        if case == "summary":
-            continue
+    for case in recordings:
+        numbers = metrics[case]
         rows.append(
             {
                 "method": case,

@@ -110,6 +110,14 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """Share by which the barrier (weight 1) changes the largest distance with tau = duration."""
+    if not {"feedforward", "no_barrier"} <= set(metrics):
+        return {}
+    with_barrier, without = (float(metrics[case]["e_max"] or 0) for case in ("feedforward", "no_barrier"))
+    return {"barrier_effect": abs(with_barrier - without) / without}
+
+
 def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
@@ -123,8 +131,8 @@ def tabulate(
         "weight_effect": "path change for other weights [cm]",
     }
     rows = []
-    for case, numbers in metrics.items():
-        c = config.cases[case]
+    for case in recordings:
+        numbers, c = metrics[case], config.cases[case]
         tau = "segment" if c.dmp.tau is None else f"{c.dmp.tau:g} s"
         setting = {"law": c.cdmp.law, "tau": tau, "margin [cm]": c.cdmp.margin, "weight": c.cdmp.weight}
         rows.append({"case": case, **setting, **{text: numbers[key] for key, text in columns.items()}})

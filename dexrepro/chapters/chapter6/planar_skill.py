@@ -175,6 +175,9 @@ def _spline(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any) -
 
 def _extended(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any) -> str:
     old, block = plane.obstacles(settings)
+    axes.set(
+        xlim=(min(0.0, lines["extended_1"][:, 0].min() - 0.5), 20), ylim=(0, lines["extended_1"][:, 1].max() + 0.5)
+    )
     for name, colour, dash, text in (
         ("extended_1", style.BOOK, "-", "1, new goal"),
         ("extended_2", style.PRINTED, "-.", "2, new start"),

@@ -23,7 +23,10 @@ FIGURES = {
         "right blue) and the 95th percentiles. The book shows the bands; our noise levels set the ratio.",
         "The wrists spread about twice as far as the shoulders.",
     ),
-    "6.8": Figure("Stages of the calculation as the code runs them; same order as in the book.", "Block diagram."),
+    "6.8": Figure(
+        "Stages of the calculation as the code runs them; same order as in the book.",
+        "Block diagram: loop 1 restores lengths outwards, then the hands, then loop 2 restores lengths inwards.",
+    ),
     "6.9": Figure(
         "Paths of the six joints, front view: constrained primitives (solid), original primitives (dotted) and stick "
         "figures at six instants. The book shows the same in three dimensions.",
