@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 
 from dexrepro.primitives.barrier import Constraint, Gains
 from dexrepro.primitives.constrained import LAWS, Reference, Skill, rollout
@@ -146,3 +147,40 @@ def test_runs_of_a_batch_do_not_influence_each_other():
     single = roll("printed", reference, 1e-3)
     np.testing.assert_allclose(both.position[:, 0], single.position, atol=1e-12)
     assert not both.defined[-1, 1]
+
+
+@pytest.mark.parametrize("law", ["consistent", "printed", "feedforward"])
+def test_fixed_steps_agree_with_an_adaptive_solution(law):
+    """A primitive that would go straight follows a wave; LSODA solves the same equations written out."""
+    dt, tau, amplitude, margin, duration = 1e-3, 2.0, 0.1, 0.3, 2.0
+    time, reference = bumpy(dt, amplitude, duration)
+    goal, stiffness, damping = reference.position[-1], 156.25, 25.0
+
+    def forcing(t):
+        straight = np.stack([t, 0 * t], axis=-1)
+        return stiffness * (straight - goal) + damping * tau * np.array([1.0, 0.0])
+
+    def rate(t, state):
+        x, v = state[:2], state[2:]
+        w = 2 * np.pi / duration
+        target = np.array([t, amplitude * (1 - np.cos(w * t))])
+        velocity = np.array([1.0, amplitude * w * np.sin(w * t)])
+        acceleration = np.array([0.0, amplitude * w * w * np.cos(w * t)])
+        z1, z1_rate = 150 * (target - x), 150 * (velocity - v / tau)
+        alpha, alpha_rate = tau * (velocity + z1 / 25), tau * (acceleration + z1_rate / 25)
+        z2 = 25 * (alpha - v)
+        gain = 10 / 25 + 150 / (4 * 625 * tau**2) / ((150 * margin) ** 2 - z1 @ z1)
+        own = (stiffness * (goal - x) - damping * v + forcing(t)) / tau
+        wanted = alpha_rate + gain * z2
+        applied = {"consistent": wanted, "printed": (own + wanted) / 2, "feedforward": own + wanted}[law]
+        return np.concatenate([v / tau, applied])
+
+    start, velocity = reference.position[0] - [0.05, 0.0], tau * reference.velocity[0]
+    exact = solve_ivp(
+        rate, (0, duration), np.concatenate([start, velocity]), method="LSODA", rtol=1e-8, atol=1e-10, t_eval=time
+    )
+    nominal = np.zeros_like(reference.position)
+    skill = Skill(forcing(time), goal, tau, nominal=nominal)
+    path = rollout(skill, reference, Constraint(True, 150 * margin), GAINS, LAWS[law], dt, start, velocity)
+    assert path.distance.max() < margin
+    np.testing.assert_allclose(path.position, exact.y[:2].T, atol=5e-4)
