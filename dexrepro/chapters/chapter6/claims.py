@@ -142,18 +142,20 @@ PLANE = (
     Claim(
         "C6.14",
         "6.2d",
-        "The extra term leaves the learned skill untouched (the path still depends on the weights, consistent law).",
-        greater(f"{LAW}.consistent.weight_effect", 1e-6),
+        "The extra term does not influence the learned skill: the weights stay as they are.",
+        every(*(less(f"{LAW}.{law}.weights_changed", 1e-12) for law in ("consistent", "printed", "feedforward"))),
         where="6.5",
-        note="The weights are unchanged by definition; but the consistent law cancels the primitive, so that the path "
-        "does not depend on them. With the printed form and the recorded acceleration it does (C6.36).",
+        by_construction="the extra term acts on the movement, nothing is learned anew",
+        note="What the skill still contributes to the movement is another matter, see C6.36.",
     ),
     Claim(
         "C6.36",
         "6.2d",
-        "The path still depends on the learned weights (printed form and recorded acceleration).",
-        every(*(greater(f"{LAW}.{law}.weight_effect", 0.01) for law in ("printed", "feedforward"))),
+        "The constrained movement still depends on the learned weights under every reading of the law.",
+        every(*(greater(f"{LAW}.{law}.weight_effect", 0.01) for law in ("consistent", "printed", "feedforward"))),
+        source="ours",
         where="6.5",
+        note="Not under the consistent law, the one that the proof holds for: it cancels the primitive altogether.",
     ),
     Claim(
         "C6.15",

@@ -43,7 +43,9 @@ def simulate(config: Config, rng: Any) -> Recording:
     skill = learning.skill(primitives + stronger, movements + learning.nominal(stronger, durations, steps))
     reference = learning.stack(references * 2)
     dt = np.tile(durations / steps, 2)[:, None]
+    learned = [p.weights.copy() for p in primitives]
     path = learning.constrained(skill, reference, config.cdmp, dt, _start(primitives * 2))
+    changed = max(float(np.abs(p.weights - before).max()) for p, before in zip(primitives, learned))
     rows = [_row(path, reference, group, lesson, config) for group, lesson in enumerate(lessons)]
     series = {
         "time": movements[0].time,
@@ -53,7 +55,8 @@ def simulate(config: Config, rng: Any) -> Recording:
         "lyapunov": path.lyapunov[:, 0],
         "projected": path.projected[:, 0],
     }
-    return Recording(series=series, frames={"groups": pd.DataFrame(rows)}, steps=steps, simulated=float(durations[0]))
+    frames = {"groups": pd.DataFrame(rows).assign(weights_changed=changed)}
+    return Recording(series=series, frames=frames, steps=steps, simulated=float(durations[0]))
 
 
 def _start(primitives: list[Any]) -> NDArray[Any]:
@@ -107,6 +110,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "v_rises": int(groups.v_rises.min()),
         "v_max": float(groups.v_max.max()) if defined.v_max else None,
         "weight_effect": float(groups.weight_effect.max()),
+        "weights_changed": float(groups.weights_changed.max()),
     }
 
 
