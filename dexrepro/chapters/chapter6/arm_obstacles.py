@@ -199,9 +199,9 @@ def _draw_scene(original: Recording, constrained: Recording, config: Config) -> 
         (constrained, {"color": "#D00000", "linestyle": "--"}),
     ):
         axes.plot(*_pixels(run["desired"], image.shape).T, **line)
-    for name, text in (("first", "old"), ("second", "old"), ("new", "new")):
+    for name, text, shift in (("first", "old", -30), ("second", "old", 16), ("new", "new", -32)):
         spot = _pixels(np.array(config.boxes[name]), image.shape)
-        axes.annotate(text, spot, xytext=(16, -2), textcoords="offset points", fontsize=7)
+        axes.annotate(text, spot, xytext=(shift, -2), textcoords="offset points", fontsize=7)
     axes.set(xlim=(0, image.shape[1]), ylim=(image.shape[0], 0))
     axes.axis("off")
     style.title(figure, "From above: learned path (yellow)\nand constrained path (red)")
