@@ -184,7 +184,7 @@ def _draw_gains(recordings: Any, metrics: Any, config: Config) -> Any:
                 side: Any = {"xytext": (-5, -5), "ha": "right", "va": "top"} if below else {"xytext": (4, 4)}
                 axes.annotate(name, place, textcoords="offset points", fontsize=6.5, **side)
         axes.set(xlabel=r"Adaptation gain $\Gamma_G\,\overline{|\vartheta_G|^2}$", ylabel=f"rms $e_{letter}$ [mm]")
-        axes.set(xlim=(0.7, 1e5), ylim=(0.03, 5))
+        axes.set(xlim=(0.7, 1e5), ylim=(0.01, 5))
     row[0].legend(loc="lower left")
     style.title(figure, "The adaptation gain sets the error: at equal gain the fixed network is not worse")
     return figure
