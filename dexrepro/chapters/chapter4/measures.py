@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,9 +12,9 @@ from dexrepro.experiment import Metrics
 Array = NDArray[np.float64]
 
 
-def rms(vectors: Array) -> float | None:
-    """Root of the mean squared length of the rows."""
-    return float(np.sqrt(np.mean(np.sum(vectors * vectors, axis=1)))) if len(vectors) else None
+def rms(vectors: Array) -> float:
+    """Root of the mean squared length of the rows; not a number where there are none."""
+    return float(np.sqrt(np.mean(np.sum(vectors * vectors, axis=1)))) if len(vectors) else math.nan
 
 
 def between(time: Array, start: float, end: float) -> NDArray[np.bool_]:
