@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import numpy as np
@@ -177,5 +178,10 @@ def _right_inverse(jacobian: Array) -> Array:
     """J^+ = J^T (J J^T)^-1, which is the inverse of a square J; by LAPACK directly, as NumPy's checks cost more."""
     rows, columns = jacobian.shape
     if rows == columns:
-        return dgesv(jacobian, np.eye(rows))[2]
-    return jacobian.T @ dgesv(jacobian @ jacobian.T, np.eye(rows))[2]
+        return dgesv(jacobian, _identity(rows))[2]
+    return jacobian.T @ dgesv(jacobian @ jacobian.T, _identity(rows))[2]
+
+
+@cache
+def _identity(size: int) -> Array:
+    return np.eye(size)

@@ -26,13 +26,14 @@ EVERY = 2  # physics steps between recorded samples
 
 
 class TipKinematics:
-    """Position of the gripper's end point (3,) and its Jacobian (3, 7), torso frame."""
+    """End point (3,) of the gripper as the robot reports it, and its Jacobian (3, 7); torso frame."""
 
     def __init__(self, model: RigidBodyModel) -> None:
         self._model = model
+        self.tip = np.zeros(3)
 
     def position(self, q: Array) -> Array:
-        return self._model.forward(q)[0]
+        return self.tip
 
     def jacobian(self, q: Array) -> Array:
         return self._model.jacobian(q)[:3]
@@ -88,8 +89,10 @@ def scene(config: Config) -> World:
 class Pilot:
     """Drives the arm with a law along a reference; the torques that hold the arm alone are added, as its maker does."""
 
-    def __init__(self, law: GlobalAdaptiveControl, model: RigidBodyModel | None, reference: Reference) -> None:
-        self.law, self.model, self.reference = law, model, reference
+    def __init__(
+        self, law: GlobalAdaptiveControl, tip: TipKinematics, model: RigidBodyModel | None, reference: Reference
+    ) -> None:
+        self.law, self.tip, self.model, self.reference = law, tip, model, reference
         self.network: Any = law.network
         self._period = 0
         law.reset()
@@ -97,6 +100,7 @@ class Pilot:
     def __call__(self, sense: Sense) -> tuple[Array, Array]:
         k, reference = self._period, self.reference
         self._period += 1
+        self.tip.tip = sense.tip
         torque, damping = self.law(
             sense.position, sense.velocity, reference.position[k], reference.velocity[k], reference.acceleration[k]
         )
@@ -121,7 +125,8 @@ def simulate(config: Config) -> Recording:
     network: AdaptiveNetwork | None = None
     if config.network is not None:
         network = config.network(gain=np.array(config.effective_gain) / config.feature_energy)
-    law: GlobalAdaptiveControl = config.law(TipKinematics(model), network)
+    tip = TipKinematics(model)
+    law: GlobalAdaptiveControl = config.law(tip, network)
     nominal = model if config.gravity_compensation else None
     parts, images, status, knowledge = [], {}, "finished", None
     for number, reference in motions(config):
@@ -130,7 +135,7 @@ def simulate(config: Config) -> Recording:
                 knowledge = network.weights.copy(), getattr(network.basis, "centres", None)
             _restore(network, *knowledge)
             law.learning = config.mode != "frozen"
-        pilot = Pilot(law, nominal, reference)
+        pilot = Pilot(law, tip, nominal, reference)
         with scene(config) as world:
             duration = len(reference.position) * config.step
             part = world.run(
