@@ -133,25 +133,20 @@ class Pilot:
         """W-bar, the mean over the last reference period at the final number of nodes (4.31)."""
         return self._sum / self._samples
 
-    def state(self) -> Array:
-        """Error (2), usage (2), E, nodes, |G|^2, |Xi|, the columns of ``STATE``."""
+    def state(self) -> list[float]:
+        """Error (2), usage (2), E, nodes, |G|^2, |Xi|, largest |Xi_k|, alpha' (2): the columns of ``STATE``."""
         law, nodes, energy = self.law, 0, 0.0
         if self.network is not None:
             basis, features = self.network.basis, self.network.features
             nodes = basis.nodes if isinstance(basis, GrowingGaussians) else basis.capacity
             energy = features @ features
-        norm = math.sqrt(law.input @ law.input)
-        return np.array([*law.error, *law.usage, law.share, nodes, energy, norm])
+        z = law.input.tolist()
+        norm, peak = math.hypot(*z), max(map(abs, z))
+        return [*law.error, *law.usage, law.share, nodes, energy, norm, peak, *z[6:]]
 
 
-STATE: dict[str, Any] = {
-    "error": slice(0, 2),
-    "usage": slice(2, 4),
-    "share": 4,
-    "nodes": 5,
-    "feature_energy": 6,
-    "input_norm": 7,
-}
+STATE: dict[str, Any] = {"error": slice(0, 2), "usage": slice(2, 4), "share": 4, "nodes": 5, "feature_energy": 6}
+STATE |= {"input_norm": 7, "input_peak": 8, "virtual_acceleration": slice(9, 11)}
 
 
 def simulate(config: Config) -> Recording:
