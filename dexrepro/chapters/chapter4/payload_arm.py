@@ -22,6 +22,7 @@ from dexrepro.robots.baxter import baxter
 
 Array = NDArray[np.float64]
 TRAINING = (0, 1)  # phases I and II; phase III has the numbers 2 to 10, one a trajectory
+START_COLOUR, END_COLOUR = (0.90, 0.62, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
 EVERY = 2  # physics steps between recorded samples
 
 
@@ -80,9 +81,13 @@ def scene(config: Config) -> World:
     world = World(step=config.step, gravity=(0.0, 0.0, -9.81), perturbation=config.perturbation)
     arm = baxter("right")
     world.add_arm("arm", arm, position=posture_at(arm, config.task.home, config.task.posture))
-    if config.payload.mass > 0:
+    if config.payload:
         payload = config.payload
         world.hang("payload", "arm", payload.mass, payload.drop, radius=0.04, angular_damping=payload.angular_damping)
+    if config.picture:
+        points = [*config.task.starts, *config.task.ends]
+        for name, point, colour in zip("ABCDEF", points, [START_COLOUR] * 3 + [END_COLOUR] * 3):
+            world.add_sphere(name, 0.02, point, colour=colour, collides=False)
     return world
 
 

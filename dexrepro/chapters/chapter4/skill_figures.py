@@ -225,7 +225,7 @@ def weights(recording: Recording, metrics: Metrics, threshold: int) -> Any:
                 if np.isfinite(values).any():
                     dashes = ("-", "--", "-.", ":")[k % 4]
                     panel.plot(frame.loc[now, "time"], values, dashes, color=NODE_COLOURS[k % 8], label=f"node {k + 1}")
-        row[0].set_ylabel(f"Weights, joint {joint} [N m]")
+        row[0].set_ylabel(f"$W$, joint {joint} [N m]")
     for number, panel in enumerate(axes[0]):
         large, nodes = metrics.get(f"stroke{number + 1}_large_weights"), metrics.get(f"stroke{number + 1}_nodes")
         panel.set_title(f"stroke {ROMAN[number]}: {large} of {nodes} large")
