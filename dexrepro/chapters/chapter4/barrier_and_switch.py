@@ -61,7 +61,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     law = next(iter(config.cases.values())).law
     inner, outer = law.switch.inner, law.switch.outer
     size = np.linspace(0, 1.15 * outer, 400)
-    lines = [style.LINES[name] for name in ("book", "extra1", "extra2", "rival")]
+    lines = [style.LINES[name] for name in ("plain", "extra1", "book", "rival")]
     for axes, square_outside, text in ((inside, False, "(u/ω)² in the exponent"), (outside, True, "(exp(u/ω))²")):
         for line, shape in zip(lines, (0.5, 0.64, 1.0, 2.0)):
             switch = Switch(inner, outer, shape, square_outside)
@@ -70,14 +70,15 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         for value, word in ((inner, "$d_a$"), (outer, "$d_b$")):
             style.event(axes, value, word)
         axes.set(xlabel=r"$|\Xi_k|$", ylabel="E", ylim=(0, 2.1), title=text)
-        axes.legend(loc="upper center")
+    inside.legend(loc="lower left")
     if "base" in recordings:
         _draw_run(recordings, share, error)
     found = metrics.get("base", {})
     transient, orbit = found.get("smallest_share"), found.get("settled_share")
     if transient is not None and orbit is not None:
         style.title(
-            figure, f"The robust term takes over in the transient (E falls to {transient:.2g}); later E >= {orbit:.2g}"
+            figure,
+            f"The robust term takes over in the transient (E falls to {transient:.2g}); on the orbit E = {orbit:.2g}",
         )
     return {"4.3": figure}
 

@@ -184,5 +184,5 @@ def photograph(world: World, part: Recording, time: float) -> NDArray[np.uint8]:
     """The arm and its payload at an instant of a run."""
     k = min(int(np.searchsorted(part.time, time)), len(part.time) - 1)
     poses = {"payload": part["payload.pose"][k]} if "payload.pose" in part else {}
-    camera = Camera(target=(0.45, -0.4, 0.0), distance=1.9, yaw=-60.0, pitch=-20.0)
+    camera = Camera(target=(0.42, -0.45, 0.15), distance=1.5, yaw=-60.0, pitch=-20.0)
     return world.render({"arm": part["arm.position"][k]}, poses, camera=camera, size=(480, 480))

@@ -96,8 +96,8 @@ BARS = {
     "none": ("no network", "plain"),
     "zero": ("broad, untrained", "extra1"),
     "frozen": ("broad, frozen", "extra3"),
-    "rbf_medium": (r"RBF 16384, $\eta$ = 1.5", "rival"),
-    "rbf_wide": (r"RBF 16384, $\eta$ = 3", "extra2"),
+    "rbf_medium": (r"RBF, $\eta$ = 1.5", "rival"),
+    "rbf_wide": (r"RBF, $\eta$ = 3", "extra2"),
     "reuse": ("broad, trained", "book"),
 }
 
@@ -114,11 +114,12 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
 def _draw_phases(recording: Recording, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(1, 3, height=2.5)
+    figure, axes = style.subplots(1, 3, height=2.6)
     for k, (panel, where) in enumerate(zip(axes, ("near B", "near E", "from A to D")), 1):
         panel.imshow(recording.images[f"phase{k}"])
         panel.set_axis_off()
         panel.set_title(f"phase {'I' * k}, {config.cases['reuse'].task.pictured[k - 1]:.1f} s: {where}")
+    axes[0].annotate("orange: A, B, C\ngreen: D, E, F", (0.02, 0.03), xycoords="axes fraction", size=7)
     style.title(figure, "The payload hangs from the gripper on a ball joint")
     return figure
 
@@ -144,11 +145,11 @@ def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
     for panel in axes[0]:
         style.band(panel, time, -limit, limit, zorder=-5)
         panel.set_ylim(-220, 220)
-    axes[1, 0].legend(loc="upper right")
+    axes[0, 0].legend(loc="lower right")
     _draw_bars(figure, axes, metrics)
     reuse, fixed = metrics["reuse"]["rmse_mm"], metrics["rbf_medium"]["rmse_mm"]
     style.title(
-        figure, f"Trained, the broad network errs by {reuse:.0f} mm, the fixed one by {fixed:.0f}; bound in grey"
+        figure, f"Trained, the broad network errs by {reuse:.0f} mm, a fixed one by {fixed:.0f} mm (bound: grey)"
     )
     return figure
 
