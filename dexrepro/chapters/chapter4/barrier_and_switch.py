@@ -123,7 +123,6 @@ TURNS = (
     ("C4.01", "fixed network of width 2, equal effective gain", "rbf2", "steady_rmse_mm", "base"),
     ("C4.01", "fixed network of width 6, equal effective gain", "rbf6", "steady_rmse_mm", "base"),
     ("C4.01", "fixed network of width 10, equal effective gain", "rbf10", "steady_rmse_mm", "base"),
-    ("C4.01", "fixed network of width 20, equal effective gain", "rbf20", "steady_rmse_mm", "base"),
     ("C4.02b", "fuzzy network, equal effective gain", "fuzzy", "rmse_mm", "base"),
     ("C4.02b", "fuzzy network, the same gamma for all methods", "fuzzy_common_gamma", "rmse_mm", "common_gamma"),
     ("C4.17a", "no enhancement, the same gain", "gaussians", "steady_rmse_mm", "base"),

@@ -241,7 +241,7 @@ def settled(history: list[Array], per_node: int) -> dict[str, float]:
     over the norm of that mean. large, nodes: Gaussians whose weight of joint 1 exceeds a tenth of the largest, and all.
     """
     half = np.array([weights for weights in history if weights.shape == history[-1].shape])
-    first, second = np.array_split(half, 2)
+    first, second = half[: len(half) // 2], half[len(half) // 2 :]
     mean = second.mean(axis=0)
     size = np.linalg.norm(mean) or 1.0
     return {
