@@ -70,7 +70,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         for value, word in ((inner, "$d_a$"), (outer, "$d_b$")):
             style.event(axes, value, word)
         axes.set(xlabel=r"$|\Xi_k|$", ylabel="E", ylim=(0, 2.1), title=text)
-    inside.legend(loc="lower left")
+    inside.legend(loc="upper left", bbox_to_anchor=(0.3, 1.0))
     if "base" in recordings:
         _draw_run(recordings, share, error)
     found = metrics.get("base", {})

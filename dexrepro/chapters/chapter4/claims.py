@@ -27,8 +27,8 @@ CLAIMS = (
         "It is also nearer than the fixed network of tuned width once both have settled.",
         less(f"{S}.broad20.steady_rmse_mm", f"{S}.rbf10.steady_rmse_mm"),
         source="ours",
-        note="Of the widths 2, 6, 10 and 20 the fixed network with 10 errs least on the last stroke; with 2, the spacing "
-        "of the printed centres, it oscillates.",
+        note="Of the widths 2, 6, 10 and 20 the fixed network with 10 errs least on the last stroke; with 2, the "
+        "spacing of the printed centres, it oscillates.",
     ),
     Claim(
         "C4.02a",

@@ -114,14 +114,15 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         right.loglog(cost.nodes, cost.memory_kb, marker="o", markersize=3, **style.LINES[line])
     left.axhline(1e3 * config.period_ms, **style.LINES["reference"])
     left.annotate(
-        "control period 1 ms", (12, 1e3 * config.period_ms), xytext=(0, -9), textcoords="offset points", size=7
+        "control period 1 ms", (4, 1e3 * config.period_ms), xytext=(0, -9), textcoords="offset points", size=7
     )
     for axes, label in ((left, "Shortest step time [µs]"), (right, "Memory [kB]")):
         axes.set(xlabel="Nodes", ylabel=label)
         for nodes in (72, 16384):
             axes.axvline(nodes, color="#999999", linewidth=0.6, zorder=-5)
-    for nodes, word, side in ((72, " the book's broad network", "left"), (16384, "its fixed network ", "right")):
-        right.annotate(word, (nodes, 0.05), xycoords=("data", "axes fraction"), size=6.5, ha=side)
+    places = ((72, " the book's broad network", "left", 0.05), (16384, "its fixed network ", "right", 0.14))
+    for nodes, word, side, height in places:
+        right.annotate(word, (nodes, height), xycoords=("data", "axes fraction"), size=6.5, ha=side)
     left.legend(loc="upper left", bbox_to_anchor=(0.0, 0.9))
     small, large = (recordings[case].frames["cost"] for case in ("growing", "lattice"))
     ratio = float(large.step_us.iloc[-1] / small.step_us[small.nodes <= 72].iloc[-1])
