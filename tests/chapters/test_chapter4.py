@@ -140,7 +140,7 @@ def test_without_the_switch_the_enhanced_network_diverges():
 
 
 def test_knowledge_of_the_payload_reduces_the_error_of_a_new_trajectory():
-    short = {"task__trajectories": 1, "picture": False}
+    short = {"task__starts": [[0.7, -0.2, -0.25]], "task__ends": [[0.5, -0.8, 0.25]], "picture": False}
     _, trained = simulated("payload_transfer", "reuse", **short)
     _, empty = simulated("payload_transfer", "zero", **short)
     assert trained["rmse_mm"] < 0.8 * empty["rmse_mm"]
