@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.linalg.lapack import dgesv
 
 from dexrepro.control.prescribed_performance import PerformanceBound
 
@@ -149,21 +151,37 @@ class GlobalAdaptiveControl:
     def _virtual_velocity(
         self, q: Array, dq: Array, jacobian: Array, reference: tuple[Array, Array], ratios: tuple[float, float]
     ) -> tuple[Array, Array]:
-        """alpha (4.20) and its exact derivative, for alpha = J^T w with J J^T w = u."""
+        """alpha (4.20) and its derivative, which is exact but for a forward difference of the Jacobian."""
         (velocity, acceleration), (ratio, ratio_rate) = reference, ratios
         decay = math.sqrt(2.0 * ratio**2 + self.floor)  # l(t)
         feedback = self.position_gain + decay
         u = velocity - feedback * self.error
-        u_rate = acceleration - feedback * (jacobian @ dq - velocity) - (2.0 * ratio * ratio_rate / decay) * self.error
-        inverse = np.linalg.inv(jacobian @ jacobian.T)
-        w = inverse @ u
-        alpha = jacobian.T @ w
-        jacobian_rate = (self.model.jacobian(q + 1e-5 * dq) - self.model.jacobian(q - 1e-5 * dq)) / 2e-5
-        drift = jacobian_rate.T @ w
-        return alpha, drift + jacobian.T @ (inverse @ (u_rate - jacobian_rate @ alpha - jacobian @ drift))
+        error_rate = jacobian @ dq - velocity
+        u_rate = acceleration - feedback * error_rate - (2.0 * ratio * ratio_rate / decay) * self.error
+        jacobian_rate = (self.model.jacobian(q + 1e-7 * dq) - jacobian) * 1e7
+        inverse = _right_inverse(jacobian)
+        alpha = inverse @ u
+        u_rate -= jacobian_rate @ alpha
+        if len(jacobian) == len(q):
+            return alpha, inverse @ u_rate
+        drift = jacobian_rate.T @ (inverse.T @ alpha)  # of the row space of J
+        return alpha, drift + inverse @ (u_rate - jacobian @ drift)
 
     def _radius(self) -> float:
         if self.switch is None or not self.switch.node_scaled or self.network is None:
             return 1.0
         centres: Array = self.network.basis.centres  # type: ignore[attr-defined]
         return float(np.sqrt(np.max(np.einsum("ij,ij->i", centres, centres)))) if len(centres) else np.inf
+
+
+def _right_inverse(jacobian: Array) -> Array:
+    """J^+ = J^T (J J^T)^-1, which is the inverse of a square J; by LAPACK directly, as NumPy's checks cost more."""
+    rows, columns = jacobian.shape
+    if rows == columns:
+        return dgesv(jacobian, _identity(rows))[2]
+    return jacobian.T @ dgesv(jacobian @ jacobian.T, _identity(rows))[2]
+
+
+@cache
+def _identity(size: int) -> Array:
+    return np.eye(size)
