@@ -9,9 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-#: Height at which two equally wide neighbouring sets of width WIDTH_AT_HALF times their distance cross: one half.
-WIDTH_AT_HALF = 0.5 / np.sqrt(np.log(2.0))
-
 
 class FuzzySystem:
     """Rules "IF t1 is far AND t2 is tall THEN consequent", Eqs. (7.10), (7.11), (7.29).

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dexrepro.networks.fuzzy import WIDTH_AT_HALF, FuzzySystem
+from dexrepro.networks.fuzzy import FuzzySystem
 
 SETS = {
     "distance": {"close": (5.8, 3.6), "far": (11.8, 3.6)},
@@ -24,11 +24,6 @@ def test_strengths_are_a_partition_of_one_however_far_the_input(inputs):
     assert strengths.shape == (12,)
     assert (strengths >= 0).all()
     assert strengths.sum() == pytest.approx(1.0)
-
-
-def test_two_equal_sets_of_width_at_half_cross_at_one_half():
-    width = WIDTH_AT_HALF * 6.0
-    assert np.exp(-((3.0 / width) ** 2)) == pytest.approx(0.5)
 
 
 def test_strengths_are_the_normalised_products_of_memberships():

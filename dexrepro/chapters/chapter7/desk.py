@@ -16,7 +16,7 @@ from scipy.ndimage import gaussian_filter1d
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import Config, Recording
 from dexrepro.humans.reaching import Obstacle
-from dexrepro.physics.elements import JointLoad, Push, joint_friction
+from dexrepro.physics.elements import JointLoad, joint_friction
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
@@ -228,9 +228,3 @@ def tracking_metrics(recording: Recording, config: Config) -> dict[str, float | 
     )
     finished = {"finished": int(diverged is None), "diverged_at": diverged}
     return dict(zip(names, values if diverged is None else (None,) * 4)) | finished
-
-
-def push(times: list[tuple[float, float]], force: list[float]) -> Push:
-    """A force [N] on the tip during intervals (start, end) [s]."""
-    off = (0.0, 0.0, 0.0)
-    return Push("arm", lambda t: force if any(start <= t < end for start, end in times) else off)
