@@ -187,9 +187,7 @@ def within(a: str, low: float, high: float) -> Predicate:
 
 def ordered(*names: str) -> Predicate:
     """The metrics increase in the order given. Margin: the smallest of the neighbours' margins."""
-    return Predicate(
-        " < ".join(names), names, lambda v: min(_relative_gap(a, b) for a, b in itertools.pairwise(v))
-    )
+    return Predicate(" < ".join(names), names, lambda v: min(_relative_gap(a, b) for a, b in itertools.pairwise(v)))
 
 
 def every(*predicates: Predicate) -> Predicate:
