@@ -77,3 +77,13 @@ class RelativePose:
             self.position = self.follower_start + scale * (self.leader_to_follower @ total)
         self.leader_last = np.array(leader_position, float)
         return self.position, self.leader_to_follower @ leader_rotation @ self.fixed_rotation
+
+
+def scaled_path(hand: Array, scaling: Callable[[Array], Array], dt: float) -> tuple[Array, Array]:
+    """Displacement of the follower [m] and the scale along a whole path of the hand [m], shape (n, k) -> (n, k), (n,).
+
+    The scale of a sample is that of the step which leads to it; what :class:`RelativePose` does sample by sample.
+    """
+    steps = np.diff(hand, axis=0, prepend=hand[:1])
+    scale = scaling(np.linalg.norm(steps, axis=1) / dt)
+    return np.cumsum(scale[:, None] * steps, axis=0), scale

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from dexrepro.control.pose_transformation import ConstantScaling, RelativePose, SpeedScaling
+from dexrepro.control.pose_transformation import ConstantScaling, RelativePose, SpeedScaling, scaled_path
 
 seeds = st.integers(0, 2**32 - 1)
 quick = settings(deadline=None, max_examples=25)
@@ -71,3 +71,13 @@ def test_scaling_is_bounded_and_grows_with_speed(a, b):
 
 def test_scaling_has_the_printed_ends():
     np.testing.assert_allclose(SpeedScaling()(np.array([0.0, 0.05, 0.175, 0.3, 1.0])), [1, 1, 4.5, 8, 8])
+
+
+def test_a_whole_path_is_scaled_as_sample_by_sample():
+    path = np.cumsum(np.random.default_rng(1).normal(scale=1.5e-3, size=(80, 3)), axis=0)
+    pose = RelativePose(scaling=SpeedScaling(), dt=0.01)
+    pose.reset(path[0], np.eye(3), np.zeros(3), np.eye(3))
+    expected = [pose(x, np.eye(3))[0] for x in path]
+    moved, scale = scaled_path(path, SpeedScaling(), 0.01)
+    np.testing.assert_allclose(moved, expected, atol=1e-14)
+    assert scale.min() == 1.0 < np.median(scale) < scale.max()
