@@ -1,0 +1,38 @@
+"""Explicit force control along the holding line: the force error sets the position, or its rate."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class ForceControl:
+    """Reference proportional to the force error, x_1 = x_1(0) + gain (f_x - f_x,d) (Sect. 2.4.1.3).
+
+    gain: [m/N]. desired_force: [N]. Against a spring k_o it leaves the error (f(0) - f_d) / (1 + gain k_o).
+    """
+
+    def __init__(self, *, gain: Any, desired_force: float) -> None:
+        self.gain, self.desired_force = gain, desired_force
+
+    def reset(self, position: Any) -> None:
+        self._start = position
+
+    def __call__(self, position: Any, force: Any) -> Any:
+        return self._start + self.gain * (force - self.desired_force)
+
+
+class IntegralForceControl:
+    """Reference that moves with a velocity proportional to the force error.
+
+    rate: [m/(s N)]. desired_force: [N]. dt: control period [s].
+    """
+
+    def __init__(self, *, rate: Any, desired_force: float, dt: float) -> None:
+        self.rate, self.desired_force, self.dt = rate, desired_force, dt
+
+    def reset(self, position: Any) -> None:
+        self._reference = position
+
+    def __call__(self, position: Any, force: Any) -> Any:
+        self._reference = self._reference + self.dt * self.rate * (force - self.desired_force)
+        return self._reference

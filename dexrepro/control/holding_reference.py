@@ -1,0 +1,65 @@
+"""References along the holding line from an estimate of the partner's movement, with and without an impedance lead.
+
+The holding laws (here, in ``force_control`` and in ``passive_impedance``) share one signature: ``reset(position)`` with
+the arm's position along the line [m], then ``law(position, force)`` once a control period with the arm's own position
+x_1 [m] and the contact force f_x on it [N, positive in compression]; the result is the reference x_1,r [m].
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from dexrepro.control.movement_estimation import MovementEstimation
+
+
+class NonImpedanceReference:
+    """Where the arm must stand for the estimated object to push with the desired force, Eq. (2.24).
+
+    desired_force: f_x,d [N]. dt: control period [s].
+    smoothing_rate, smoothing_power: mu, eta of the factor 1 - exp(-mu t^eta) that fades the reference in from the
+        position at ``reset`` (the origin of the arm's own frame in the book).
+    """
+
+    def __init__(
+        self,
+        *,
+        estimation: MovementEstimation,
+        desired_force: float,
+        smoothing_rate: float,
+        smoothing_power: float,
+        dt: float,
+    ) -> None:
+        self.estimation, self.desired_force, self.dt = estimation, desired_force, dt
+        self.smoothing_rate, self.smoothing_power = smoothing_rate, smoothing_power
+
+    def reset(self, position: Any) -> None:
+        self.estimation.reset()
+        self._start, self._sample = position, 0
+
+    def __call__(self, position: Any, force: Any) -> Any:
+        self.estimation(position, force)
+        time = self._sample * self.dt
+        self._sample += 1
+        fade = -math.expm1(-self.smoothing_rate * time**self.smoothing_power)
+        return self._start + fade * (self._target() - self._start)
+
+    def _target(self) -> Any:
+        estimate = self.estimation
+        return estimate.position - self.desired_force / estimate.stiffness
+
+
+class ImpedanceReference(NonImpedanceReference):
+    """The same, led by the partner's estimated velocity and acceleration through an impedance, Eq. (2.32).
+
+    mass, damping, stiffness: m [kg], b [N s/m], k [N/m] of the target impedance, Eq. (2.25).
+    """
+
+    def __init__(self, *, mass: Any, damping: Any, stiffness: Any, **shared: Any) -> None:
+        super().__init__(**shared)
+        self.mass, self.damping, self.stiffness = mass, damping, stiffness
+
+    def _target(self) -> Any:
+        estimate = self.estimation
+        lead = (self.damping * estimate.velocity + self.mass * estimate.acceleration) / self.stiffness
+        return super()._target() + lead

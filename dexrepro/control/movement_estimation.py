@@ -1,0 +1,101 @@
+"""Adaptive estimate of an unseen partner's movement and of the object's stiffness from the contact force alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+
+class MovementEstimation:
+    """Estimates the rest position x_c(t) = a_0 + a_1 t + ... and the stiffness k_o behind f = k_o (x_c - x_1).
+
+    Eqs. (2.10)-(2.18), integrated with one explicit step a control period. Floats, or arrays for a batch of runs.
+
+    stiffness: initial estimate of k_o [N/m].
+    coefficients: initial estimates of a_0, a_1, ... [m, m/s, ...]; their number is the book's n.
+    rates: the book's 1/gamma_1, 1/gamma_2, ... (one more than coefficients).
+    window: length [s] after which the polynomial is re-expanded about a new origin of time, which keeps the regressor
+        bounded; None counts time from the start, as printed.
+    floor: smallest stiffness estimate [N/m]; guards the division in Eq. (2.18).
+    implicit: divide the prediction error by 1 + dt sum(g_j Y_j^2), which is stable for every step.
+    velocity: "coefficients" takes the rate of x_c from the coefficients, Eq. (2.12); "total" differentiates the
+        estimate itself, so that the coefficients' own change counts (the acceleration is then taken as zero).
+    smoothing: time constant [s] of the low-pass filter on the total derivative.
+    """
+
+    def __init__(
+        self,
+        *,
+        stiffness: Any,
+        coefficients: Sequence[Any],
+        rates: Sequence[Any],
+        dt: float,
+        window: float | None = None,
+        floor: float = 1.0,
+        implicit: bool = False,
+        velocity: str = "coefficients",
+        smoothing: float = 0.01,
+    ) -> None:
+        if len(rates) != len(coefficients) + 1:
+            raise ValueError(f"{len(coefficients)} coefficients need {len(coefficients) + 1} rates, not {len(rates)}")
+        if velocity not in ("coefficients", "total"):
+            raise ValueError(f"velocity is 'coefficients' or 'total', not '{velocity}'")
+        self.dt, self.rates, self.floor, self.implicit = dt, tuple(rates), floor, implicit
+        self.total = velocity == "total"
+        self._blend = dt / (dt + smoothing)
+        self._initial = stiffness, tuple(coefficients)
+        # Samples are counted as integers: the floating-point remainder of t by the window misses some of its ends.
+        self._samples = round(window / dt) if window else 0
+        self._shift = [
+            [math.comb(i, j) * window ** (i - j) for i in range(j, len(coefficients))] if window else []
+            for j in range(len(coefficients))
+        ]
+        self.reset()
+
+    def reset(self) -> None:
+        self.stiffness, initial = self._initial
+        self.coefficients = list(initial)
+        self._maximum = np.maximum if isinstance(self.stiffness, np.ndarray) else max
+        self.position, self.velocity, self.acceleration = self.coefficients[0], 0.0, 0.0
+        self._sample = 0
+
+    def __call__(self, position: Any, force: Any) -> None:
+        """Take the arm's own position x_1 [m] and the contact force f_x [N] of one sample.
+
+        Afterwards ``position``, ``velocity`` and ``acceleration`` are the estimate for this sample, before its
+        correction, and ``stiffness`` and ``coefficients`` the corrected parameters.
+        """
+        if self._samples and self._sample == self._samples:
+            self._move_origin()
+        dt, rates, a = self.dt, self.rates, self.coefficients
+        time = self._sample * dt
+        powers = [time**j for j in range(len(a))]
+        self._predict(powers)
+        error = self.stiffness * (self.position - position) - force
+        if self.implicit:
+            load = rates[0] * position * position
+            for rate, power in zip(rates[1:], powers):
+                load = load + rate * power * power
+            error = error / (1.0 + dt * load)
+        stiffness_rate = rates[0] * position * error
+        for j, power in enumerate(powers):
+            a[j] = a[j] - dt * (rates[j + 1] * power * error + stiffness_rate * a[j]) / self.stiffness
+        self.stiffness = self._maximum(self.floor, self.stiffness + dt * stiffness_rate)
+        self._sample += 1
+
+    def _predict(self, powers: list[float]) -> None:
+        a, before = self.coefficients, self.position
+        self.position = sum(c * power for c, power in zip(a[1:], powers[1:])) + a[0]
+        if self.total:
+            self.velocity = self.velocity + self._blend * ((self.position - before) / self.dt - self.velocity)
+        else:
+            self.velocity = sum(j * a[j] * powers[j - 1] for j in range(1, len(a)))
+            self.acceleration = sum(j * (j - 1) * a[j] * powers[j - 2] for j in range(2, len(a)))
+
+    def _move_origin(self) -> None:
+        a = self.coefficients
+        self.coefficients = [sum(s * c for s, c in zip(row, a[j:])) for j, row in enumerate(self._shift)]
+        self._sample = 0

@@ -1,0 +1,55 @@
+"""Many pairs of planar arms with an elastic object between them, stepped together for searches and sensitivity studies.
+
+Published figures come from the World; this plant is the same model (semi-implicit steps of rigid rods, torque renewed
+every step) for hundreds of runs at once.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dexrepro.robots.planar_chain import PlanarChain
+
+Array = NDArray[np.float64]
+
+
+class PlanarPairs:
+    """A batch of pairs: arm 0 leads, arm 1 follows, a massless central spring joins their tips.
+
+    position: joint angles [rad], shape (3, 2, runs). stiffness [N/m], rest_length [m]: floats or shape (runs,).
+    unilateral: the object pushes and cannot pull. dt: step [s].
+    """
+
+    def __init__(
+        self,
+        chain: PlanarChain,
+        position: Array,
+        *,
+        stiffness: Any,
+        rest_length: Any,
+        dt: float,
+        unilateral: bool | NDArray[np.bool_] = True,
+    ) -> None:
+        self.chain, self.dt = chain, dt
+        self.position, self.velocity = position.copy(), np.zeros_like(position)
+        self.stiffness, self.rest_length = stiffness, rest_length
+        self._least = np.where(unilateral, 0.0, -np.inf)
+
+    def contact(self) -> tuple[tuple[Array, Array], Array, Array]:
+        """Tips (x, y), each of shape (2, runs) [m]; the force on arm 1, shape (2, runs) [N]; its magnitude [N]."""
+        x, y = self.chain.forward(self.position)
+        dx, dy = x[1] - x[0], y[1] - y[0]
+        length = np.sqrt(dx * dx + dy * dy)
+        magnitude = np.maximum(self._least, self.stiffness * (self.rest_length - length))
+        pressure = magnitude / length
+        return (x, y), np.array((pressure * dx, pressure * dy)), magnitude
+
+    def step(self, torque: Array, force: Array) -> None:
+        """Advance by one semi-implicit step under joint torques (3, 2, runs) [N m] and the contact force on arm 1."""
+        both = np.stack((-force, force), axis=1)
+        total = torque + np.array(self.chain.tip_torque(self.position, both))
+        self.velocity += self.dt * np.array(self.chain.acceleration(self.position, self.velocity, total))
+        self.position += self.dt * self.velocity
