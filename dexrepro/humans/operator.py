@@ -71,10 +71,10 @@ class Tremor:
     """Band-limited (8-12 Hz) noise of a given RMS, continued from call to call."""
 
     def __init__(self, rms: float, rng: np.random.Generator, dt: float, axes: int) -> None:
-        self.b, self.a = signal.butter(1, (8.0, 12.0), "bandpass", fs=1.0 / dt)
+        self.b, self.a = signal.butter(2, (8.0, 12.0), "bandpass", fs=1.0 / dt)
         impulse = signal.lfilter(self.b, self.a, np.r_[1.0, np.zeros(int(5.0 / dt))])
         self.gain, self.rng = rms / np.sqrt(np.sum(impulse**2)), rng
-        self.state = np.zeros((2, axes))
+        self.state = np.zeros((4, axes))
         self(int(1.0 / dt))
 
     def __call__(self, samples: int) -> Array:

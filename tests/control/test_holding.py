@@ -3,25 +3,27 @@ import itertools
 import numpy as np
 import pytest
 
-from dexrepro.control.holding import AutoregressiveHolding, Compliant, FixedDistance, ForceHolding, Impedance
+from dexrepro.control.force_control import IntegralForceControl
+from dexrepro.control.holding import AutoregressiveHolding, Compliant, FixedDistance
+from dexrepro.control.passive_impedance import PassiveImpedance
 
 DT, DESIRED = 1e-3, 10.0
 
 
 def proposed(**changes):
-    values = dict(dt=DT, desired=DESIRED, gain=0.11, estimator_gain=2.0, adaptation=1e-4, lags=3)
+    values = dict(dt=DT, desired_force=DESIRED, gain=0.11, estimator_gain=2.0, adaptation=1e-4, lags=3)
     return AutoregressiveHolding(**(values | changes))
 
 
 def hold(law, duration, stiffness=50.0, speed=0.0, unilateral=True):
     """Force on a follower with perfect tracking; the partner moves at ``speed`` [m/s] against a spring."""
-    law.reset()
+    law.reset(0.0)
     z, forces = 0.0, []
     for k in range(round(duration / DT)):
         force = stiffness * (speed * k * DT - z)
         force = max(0.0, force) if unilateral else force
         forces.append(force)
-        z = law(force, z)
+        z = law(z, force)
     return np.array(forces)
 
 
@@ -39,7 +41,7 @@ def test_ramp_error_decays_with_the_weights_time_constant():
 def test_without_weights_a_ramp_leaves_speed_over_gain():
     error = hold(proposed(adapt=False), 10.0, speed=0.015)[-1] - DESIRED
     assert error == pytest.approx(0.015 / 0.11, rel=0.01)
-    force_law = ForceHolding(dt=DT, desired=DESIRED, gain=5e-5)
+    force_law = IntegralForceControl(rate=5e-5 / DT, desired_force=DESIRED, dt=DT)
     assert hold(force_law, 15.0, speed=0.015)[-1] - DESIRED == pytest.approx(0.30, rel=0.01)
 
 
@@ -49,7 +51,7 @@ def test_estimator_gain_cancels_in_the_reference():
     rng = np.random.default_rng(0)
     for force, z in rng.normal(size=(50, 2)):
         weights, before = law.weights.copy(), law.reference
-        law(force, z)
+        law(z, force)
         rate = (law.reference - before) / DT
         assert rate == pytest.approx(weights @ law.regressor + 0.11 * (force - DESIRED), abs=1e-9)
 
@@ -69,7 +71,9 @@ def test_stability_needs_a_large_estimator_gain(estimator_gain, stable):
 
 
 def test_passive_impedance_rings_at_its_natural_frequency():
-    error = hold(Impedance(dt=DT, desired=DESIRED, mass=6.0, damping=2.0), 12.0, unilateral=False) - DESIRED
+    error = (
+        hold(PassiveImpedance(dt=DT, desired_force=DESIRED, mass=6.0, damping=2.0), 12.0, unilateral=False) - DESIRED
+    )
     down = np.flatnonzero((error[:-1] > 0) & (error[1:] <= 0))
     frequency = 2 * np.pi / (np.diff(down).mean() * DT)
     assert frequency == pytest.approx(np.sqrt(50.0 / 6.0 - 1 / 36.0), rel=0.01)
@@ -79,7 +83,7 @@ def test_passive_impedance_rings_at_its_natural_frequency():
 
 
 def test_compliant_tracking_still_reaches_the_desired_force():
-    law = Compliant(law=proposed(), impedance=Impedance(dt=DT, desired=DESIRED, mass=6.0, damping=2.0))
+    law = Compliant(law=proposed(), impedance=PassiveImpedance(dt=DT, desired_force=DESIRED, mass=6.0, damping=2.0))
     assert hold(law, 15.0)[-1] == pytest.approx(DESIRED, abs=0.05)
 
 
@@ -89,7 +93,7 @@ def test_a_batch_equals_its_members():
     law.reset(np.zeros(2))
     z = np.zeros(2)
     for _ in range(500):
-        z = law(np.maximum(0.0, -50.0 * z), z)
+        z = law(z, np.maximum(0.0, -50.0 * z))
     for gain, end in zip(gains, z):
         assert -50.0 * end == pytest.approx(hold(proposed(gain=gain), 0.501)[-1], rel=1e-12)
 
