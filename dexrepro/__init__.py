@@ -1,8 +1,49 @@
 """Reproduce, as simulations, the figures and tables of a robotics book, and check its claims with numbers."""
 
+from __future__ import annotations
+
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from dexrepro.storage import Result
 
 try:
     __version__ = version("dexrepro")
 except PackageNotFoundError:  # running from a source tree that was never installed
     __version__ = "0+unknown"
+
+__all__ = ["__version__", "load", "run"]
+
+
+def run(chapter: int | str, overrides: list[str] | None = None, **settings: Any) -> dict[str, Result]:
+    """Run experiments as ``dexrepro run`` does; returns ``{experiment: Result}``.
+
+    settings: ``only``, ``figure``, ``seed``, ``results``, ``workers``, ``force``; overrides: Hydra's grammar, for
+    example ``["movement_estimation.stiffness=[25,60]"]``. Raises RuntimeError with one sentence a failed case, and
+    dexrepro.config.InputError for input that cannot be used.
+    """
+    from dexrepro.runner import plan_chapter, run_plans
+    from dexrepro.storage import Result
+
+    workers, force = settings.pop("workers", None), settings.pop("force", False)
+    given = [f"{key}={_text(value)}" for key, value in settings.items()]
+    plans, _ = plan_chapter(str(chapter), [*given, *(overrides or [])])
+    outcome = run_plans(plans, workers=workers, force=force)
+    if outcome.failures:
+        raise RuntimeError("; ".join(f"{name} failed: {text}" for name, text in outcome.failures.items()))
+    return {name: Result(folder) for name, folder in outcome.folders.items()}
+
+
+def load(folder: str | Path) -> Result:
+    """A result from its folder, for example ``results/chapter2/movement_estimation``."""
+    from dexrepro.storage import Result
+
+    return Result(Path(folder))
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, list | tuple):
+        return "[" + ",".join(map(_text, value)) + "]"
+    return f"'{value}'" if isinstance(value, str | Path) else str(value)

@@ -1,0 +1,356 @@
+"""The command line: dexrepro run | draw | report | list | check | diff. Thin: each command calls one function."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import signal
+import sys
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from dexrepro import __version__
+
+HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--help", "-h", "--info", "-i", "--hydra-help", "--resolve")
+OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
+
+out = Console(highlight=False, soft_wrap=True)
+err = Console(stderr=True, highlight=False, soft_wrap=True)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Entry point; returns the exit status."""
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    sys.path.insert(0, "")  # a user's own classes, named by _target_
+    try:
+        return _dispatch(arguments)
+    except KeyboardInterrupt:
+        err.print("interrupted; the same command completes what is missing", markup=False)
+        return INTERRUPTED
+    except Exception as error:
+        from dexrepro.config import InputError
+
+        if not isinstance(error, InputError):
+            raise
+        err.print(f"dexrepro: {error}", markup=False)
+        return WRONG
+
+
+def _dispatch(arguments: list[str]) -> int:
+    if arguments[:1] == ["run"]:
+        return run_command(arguments[1:])
+    options = _parser().parse_args(arguments)
+    return int(options.function(options))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="dexrepro", description="Reproduce the book's figures and check its claims.")
+    parser.add_argument("--version", action="version", version=f"dexrepro {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="command")
+    commands.add_parser("run", help="simulate, measure and draw (see: dexrepro run --help)", add_help=False)
+    selection = argparse.ArgumentParser(add_help=False)
+    selection.add_argument("selection", nargs="*", metavar="key=value", help="chapter=N, only=EXPERIMENT, results=DIR")
+
+    listing = commands.add_parser("list", help="chapters, experiments, cases, figures, claims, errata")
+    listing.add_argument("--json", action="store_true")
+    listing.set_defaults(function=list_command)
+
+    check = commands.add_parser("check", parents=[selection], help="compare results with the stored baselines")
+    check.add_argument("--json", action="store_true")
+    check.add_argument("--update", action="store_true", help="run, perturb, and store new baselines")
+    check.add_argument("--accept", nargs="+", default=[], metavar="ID", help="claims whose verdict may change")
+    check.set_defaults(function=check_command)
+
+    draw = commands.add_parser("draw", parents=[selection], help="draw again from files, nothing simulated")
+    draw.set_defaults(function=draw_command)
+
+    report = commands.add_parser("report", parents=[selection], help="build the HTML page from files")
+    report.set_defaults(function=report_command)
+
+    diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
+    diff.add_argument("a", type=Path)
+    diff.add_argument("b", type=Path)
+    diff.set_defaults(function=diff_command)
+    return parser
+
+
+# -------------------------------------------------------------------------------------------------------------- run
+
+
+def run_command(arguments: list[str]) -> int:
+    """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
+    arguments = [quoted(argument) for argument in arguments]
+    if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
+        return _hydra_run(arguments)
+    extra_dir, overrides = _config_dir_option(arguments)
+    return run_overrides(overrides, extra_dir)
+
+
+def quoted(argument: str) -> str:
+    """Chapter and figure numbers as texts: Hydra refuses an int as a group choice and reads 2.10 as 2.1."""
+    match = re.fullmatch(r"(chapter|figure)=([\w.]+(?:,[\w.]+)*)", argument)
+    if not match or match[2] == "null":
+        return argument
+    return f"{match[1]}=" + ",".join(f"'{value}'" for value in match[2].split(","))
+
+
+def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
+    rest, extra_dir = list(arguments), None
+    for index, argument in enumerate(arguments):
+        if argument in ("--config-dir", "-cd"):
+            if index + 1 == len(arguments):
+                from dexrepro.config import InputError
+
+                raise InputError("--config-dir needs a folder")
+            extra_dir = arguments[index + 1]
+            del rest[index : index + 2]
+        elif argument.startswith("--config-dir="):
+            extra_dir = argument.partition("=")[2]
+            rest.remove(argument)
+    return extra_dir, rest
+
+
+def run_overrides(overrides: Sequence[str], extra_dir: str | None = None, workers: int | None = None) -> int:
+    """Plan, run and summarise what a list of overrides selects."""
+    from dexrepro.config import compose_chapter
+    from dexrepro.progress import Bar, Lines, Silent
+    from dexrepro.runner import Outcome, plan_chapter, run_plans
+
+    numbers, rest = chapters_of(overrides)
+    plans: list[Any] = []
+    skipped: dict[str, str] = {}
+    settings: dict[str, Any] = {}
+    for number in numbers:
+        settings = compose_chapter(number, rest, extra_dir)
+        chapter_plans, chapter_skipped = plan_chapter(number, rest, composed=settings)
+        plans += chapter_plans
+        skipped |= chapter_skipped
+    quiet = bool(settings.get("quiet"))
+    progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
+    with progress if isinstance(progress, Bar) else nullcontext():
+        outcome: Outcome = run_plans(
+            plans,
+            workers=workers or positive_workers(settings.get("workers")),
+            force=bool(settings.get("force")),
+            progress=progress,
+        )
+    outcome.skipped = skipped
+    if not quiet:
+        _print_summary(outcome)
+    for name, sentence in outcome.failures.items():
+        err.print(f"{name} failed: {sentence}", markup=False)
+    return FAILED if outcome.failures else OK
+
+
+def positive_workers(value: Any) -> int | None:
+    """The number of processes, None for one a core."""
+    if value is None or (isinstance(value, int) and value > 0):
+        return value
+    from dexrepro.config import InputError
+
+    raise InputError(f"workers = {value} is not allowed: it must be a whole number of 1 or greater")
+
+
+def chapters_of(overrides: Iterable[str]) -> tuple[list[str], list[str]]:
+    """Chapters that overrides select, and the other overrides.
+
+    Without ``chapter=`` the chapter follows from the figure, the experiment or the keys named; else it is the book.
+    """
+    from dexrepro import chapters
+    from dexrepro.config import InputError
+
+    chosen: list[str] = []
+    rest: list[str] = []
+    for text in overrides:
+        key, _, value = text.partition("=")
+        if key == "chapter":
+            chosen = [part.strip("'\" ") for part in value.strip("[]").split(",")]
+        else:
+            rest.append(text)
+    for number in chosen:
+        if number not in chapters.numbers():
+            raise InputError(f"unknown chapter '{number}'; chapters: {', '.join(chapters.numbers())}")
+    if chosen:
+        return chosen, rest
+    return _implied_chapters(rest) or list(chapters.numbers()), rest
+
+
+def _implied_chapters(overrides: Sequence[str]) -> list[str]:
+    from dexrepro import chapters
+    from dexrepro.config import InputError, nearest
+
+    values = dict(text.partition("=")[::2] for text in overrides)
+    figure = values.get("figure", "null").strip("'\"")
+    if figure != "null":
+        number = figure.lstrip("T").partition(".")[0]
+        if number not in chapters.numbers():
+            raise InputError(f"unknown figure '{figure}': no chapter {number}")
+        return [number]
+    owner = {e.name: number for number in chapters.numbers() for e in chapters.load(number).experiments}
+    only = values.get("only", "null").strip("'\"[]")
+    named = [] if only == "null" else [name.strip("'\" ") for name in only.split(",")]
+    for name in named:
+        if name not in owner:
+            raise InputError(f"unknown experiment '{name}': {nearest(name, owner)}")
+    named += [key.lstrip("+~").partition(".")[0] for key in values]
+    return list(dict.fromkeys(owner[name] for name in named if name in owner))
+
+
+def _hydra_run(arguments: list[str]) -> int:
+    import hydra
+
+    from dexrepro.config import config_dir
+
+    sys.argv = ["dexrepro run", *arguments]
+    hydra.main(str(config_dir().resolve()), "config", version_base="1.3")(_hydra_job)()
+    return OK
+
+
+def _hydra_job(config: Any) -> None:
+    """One job of a multirun: the same as a plain run with its overrides, in one worker."""
+    from hydra.core.hydra_config import HydraConfig
+
+    task = HydraConfig.get().overrides.task
+    chapter = HydraConfig.get().runtime.choices.get("chapter")
+    overrides = [text for text in task if not text.startswith("chapter=")]
+    selected = [f"chapter='{chapter}'"] if chapter else []
+    if run_overrides([*selected, *overrides], workers=1) != OK:
+        raise RuntimeError("some cases failed")
+
+
+def _print_summary(outcome: Any) -> None:
+    from dexrepro.experiment import AFTER_CORRECTION, NOT_EVALUATED, NOT_REPRODUCED, REPRODUCED
+    from dexrepro.runner import summary_rows
+
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    for column in ("experiment", "wall [s]", "x real time", REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED, "result"):
+        table.add_column(column, justify="left" if column in ("experiment", "result") else "right", no_wrap=True)
+    evaluated = True
+    for row in summary_rows(outcome):
+        factor = f"{row['real_time_factor']:.1f}" if row["real_time_factor"] else ""
+        verdicts = row["claims"]
+        evaluated = evaluated and not verdicts.get(NOT_EVALUATED)
+        counts = [str(verdicts.get(key, 0) or "") for key in (REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED)]
+        table.add_row(row["experiment"], f"{row['wall']:.1f}", factor, *counts, row["folder"])
+    out.print(table)
+    for name, reason in outcome.skipped.items():
+        out.print(f"{name} skipped: {reason}", markup=False)
+    for name, differs in outcome.differs.items():
+        if differs and name in outcome.folders:
+            shown = ", ".join(differs[:8]) + (f" and {len(differs) - 8} more" if len(differs) > 8 else "")
+            out.print(f"{name} differs from the book in: {shown}", markup=False)
+    if not evaluated:
+        out.print("claims whose metrics this run does not have are not evaluated")
+
+
+# --------------------------------------------------------------------------------------------------- other commands
+
+
+def _selected(options: argparse.Namespace) -> tuple[list[str], Path, list[str]]:
+    """Chapters, results folder and experiments from ``chapter=N results=DIR only=NAME``."""
+    from dexrepro.config import InputError
+
+    overrides = [quoted(text) for text in options.selection]
+    for text in overrides:
+        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers"):
+            raise InputError(f"'{text}' has no meaning here; use chapter=N, only=EXPERIMENT, figure=ID or results=DIR")
+    numbers, rest = chapters_of(overrides)
+    values = dict(text.partition("=")[::2] for text in rest)
+    only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]
+    options.workers = positive_workers(int(values["workers"]) if values.get("workers", "").isdigit() else None)
+    return numbers, Path(values.get("results", "results").strip("'\"")), only
+
+
+def list_command(options: argparse.Namespace) -> int:
+    """Everything there is, as text or JSON."""
+    from dexrepro.report.listing import listing
+
+    data = listing()
+    if options.json:
+        print(json.dumps(data, indent=1))
+        return OK
+    for chapter in data["chapters"]:
+        out.print(f"[bold]Chapter {chapter['chapter']}: {chapter['title']}[/bold]")
+        for experiment in chapter["experiments"]:
+            made = ", ".join([*experiment["figures"], *experiment["tables"]])
+            out.print(f"  {experiment['name']}: {made}", markup=False)
+            out.print(f"    cases: {', '.join(experiment['cases'])}", markup=False)
+        out.print(f"  {len(chapter['claims'])} claims, {len(chapter['errata'])} errata")
+    return OK
+
+
+def check_command(options: argparse.Namespace) -> int:
+    """Exit status 0: same; 1: drift; 2: results missing."""
+    from dexrepro import baselines
+
+    numbers, results, _ = _selected(options)
+    if options.update:
+        for number in numbers:
+            for line in baselines.update_chapter(number, results, accept=options.accept, workers=options.workers):
+                out.print(line, markup=False)
+            out.print(f"wrote {baselines.baseline_dir() / f'chapter{number}.json'}", markup=False)
+        return OK
+    try:
+        reports = [baselines.check_chapter(number, results) for number in numbers]
+    except baselines.ResultsMissing as missing:
+        err.print(str(missing), markup=False)
+        return WRONG
+    ok = all(map(baselines.is_ok, reports))
+    if options.json:
+        print(json.dumps({"ok": ok, "chapters": reports}, indent=1))
+    else:
+        for report in reports:
+            _print_check(report)
+    return OK if ok else FAILED
+
+
+def _print_check(report: dict[str, Any]) -> None:
+    changed = {claim["id"]: claim for claim in report["claims"] if claim["id"] in report["verdict_changed"]}
+    out.print(
+        f"chapter {report['chapter']}: {report['compared']} metrics compared, {len(report['drifted'])} drifted, "
+        f"{len(report['missing'])} missing, {len(report['new'])} new, {len(report['skipped'])} skipped; "
+        f"{len(report['claims'])} claims, {len(changed)} verdicts changed"
+    )
+    for entry in report["drifted"]:
+        tolerance = entry["atol"] + entry["rtol"] * abs(entry["baseline"] or 0)
+        out.print(f"  {entry['name']} = {entry['value']}, stored {entry['baseline']} +- {tolerance:.3g}", markup=False)
+    for kind in ("missing", "new"):
+        for name in report[kind]:
+            out.print(f"  {kind}: {name}", markup=False)
+    for claim in changed.values():
+        out.print(f"  {claim['id']}: {claim['verdict']}, stored: {claim['expected']}", markup=False)
+
+
+def draw_command(options: argparse.Namespace) -> int:
+    """Draw figures and tables again from what is on disk."""
+    from dexrepro.runner import redraw
+
+    numbers, results, only = _selected(options)
+    for folder in redraw(numbers, results, only):
+        out.print(str(folder), markup=False)
+    return OK
+
+
+def report_command(options: argparse.Namespace) -> int:
+    """Build results/report/index.html."""
+    from dexrepro.report import page
+
+    _, results, _ = _selected(options)
+    out.print(str(page.build(results)), markup=False)
+    return OK
+
+
+def diff_command(options: argparse.Namespace) -> int:
+    """Compare two result folders."""
+    from dexrepro.report.compare import compare
+
+    for line in compare(options.a, options.b):
+        out.print(line, markup=False)
+    return OK

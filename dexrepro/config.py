@@ -1,0 +1,303 @@
+"""From conf/ and the user's overrides to one resolved, checked configuration a case.
+
+Provenance: each leaf of conf/chapter/N.yaml says on its line where it comes from, in one grammar::
+
+    stiffness: 45   # N/m | printed 2.4.1.1
+    rest_length: 0.55   # m | chosen: equals the printed initial estimate | 0.5..0.65
+    rate: 30   # 1/s | derived: sqrt of stiffness over mass
+"""
+
+from __future__ import annotations
+
+import copy
+import difflib
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hydra import compose, initialize_config_dir
+from hydra.core.global_hydra import GlobalHydra
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.errors import HydraException
+from omegaconf import OmegaConf
+from omegaconf.errors import OmegaConfBaseException
+
+SETTINGS = ("only", "figure", "seed", "results", "workers", "force", "quiet", "gui")
+
+
+class InputError(Exception):
+    """Something the user wrote cannot be used; the message is one sentence that says what would be right."""
+
+
+def config_dir() -> Path:
+    """The folder of Hydra configurations: inside an installed wheel, or at the top of a checkout."""
+    inside = Path(__file__).parent / "conf"
+    return inside if inside.is_dir() else Path(__file__).parent.parent / "conf"
+
+
+def nearest(name: str, valid: Iterable[str]) -> str:
+    """Half a sentence that helps with a misspelt name."""
+    valid = list(valid)
+    close = difflib.get_close_matches(name, valid, n=1, cutoff=0.5)
+    if not close and "." in name:  # the right key under another parent
+        close = [key for key in valid if key.rpartition(".")[2] == name.rpartition(".")[2]][:1]
+    if close:
+        return f"did you mean '{close[0]}'?"
+    return f"there are: {', '.join(valid[:30])}{', ...' if len(valid) > 30 else ''}"
+
+
+# ---------------------------------------------------------------------------------------------------- provenance
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a parameter comes from: unit, kind (printed, chosen or derived), text, and the range worth varying."""
+
+    unit: str
+    kind: str
+    text: str
+    low: float | None = None
+    high: float | None = None
+
+
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_COMMENT = re.compile(
+    rf"^(?P<unit>[^|]*?)\s*\|\s*(?P<kind>printed|chosen|derived)\b:?\s*(?P<text>[^|]*?)\s*"
+    rf"(?:\|\s*(?P<low>{_NUMBER})\s*\.\.\s*(?P<high>{_NUMBER})\s*)?$"
+)
+_LINE = re.compile(r"^(?P<indent> *)(?P<key>[\w.\-]+|'[^']+'|\"[^\"]+\"):(?:\s+(?P<rest>.*))?$")
+
+
+def parse_provenance(comment: str) -> Provenance | None:
+    """One comment in the grammar above, or None where it does not follow it."""
+    match = _COMMENT.match(comment.strip())
+    if not match:
+        return None
+    low, high = match["low"], match["high"]
+    return Provenance(
+        match["unit"].strip(),
+        match["kind"],
+        match["text"],
+        float(low) if low else None,
+        float(high) if high else None,
+    )
+
+
+def leaves_with_comments(text: str) -> Iterator[tuple[str, str, str]]:
+    """(dotted key, value text, comment) of every leaf of a YAML text whose leaves stand on one line each."""
+    stack: list[tuple[int, str]] = []
+    depth = 0
+    for line in text.splitlines():
+        if depth > 0:  # the rest of a bracket opened on an earlier line
+            body = line.partition(" #")[0]
+            depth += sum(body.count(c) for c in "[{") - sum(body.count(c) for c in "]}")
+            continue
+        match = _LINE.match(line)
+        if not match:
+            continue
+        indent, key = len(match["indent"]), match["key"].strip("'\"")
+        while stack and stack[-1][0] >= indent:
+            stack.pop()
+        value, _, comment = (" " + (match["rest"] or "")).partition(" #")
+        value = value.strip()
+        dotted = ".".join([name for _, name in stack] + [key])
+        if value:
+            depth = sum(value.count(c) for c in "[{") - sum(value.count(c) for c in "]}")
+            yield dotted, value, comment.strip()
+        else:
+            stack.append((indent, key))
+
+
+def provenance(chapter: str) -> dict[str, Provenance]:
+    """Provenance of every leaf of conf/chapter/N.yaml that states one."""
+    text = (config_dir() / "chapter" / f"{chapter}.yaml").read_text()
+    found = ((key, parse_provenance(comment)) for key, _, comment in leaves_with_comments(text))
+    return {key: item for key, item in found if item}
+
+
+# ------------------------------------------------------------------------------------------------------- composing
+
+
+def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str | None = None) -> dict[str, Any]:
+    """The configuration of one chapter under Hydra overrides, interpolations unresolved, as plain dictionaries.
+
+    Raises InputError with one sentence where an override names no key, cannot be parsed or is out of range.
+    """
+    shipped = _compose([f"chapter='{chapter}'"])
+    check_overrides(overrides, shipped)
+    search = [f"hydra.searchpath=[file://{Path(extra_dir).resolve()}]"] if extra_dir else []
+    try:
+        return _compose([f"chapter='{chapter}'", *overrides, *search])
+    except (HydraException, OmegaConfBaseException) as error:
+        raise InputError(" ".join(str(error).split())) from error
+
+
+def _compose(overrides: list[str]) -> dict[str, Any]:
+    GlobalHydra.instance().clear()
+    with initialize_config_dir(str(config_dir().resolve()), version_base="1.3"):
+        config = compose("config", overrides=overrides)
+    return OmegaConf.to_container(config, resolve=False)  # type: ignore[return-value]
+
+
+def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> None:
+    """Refuse overrides that do not parse or whose key the shipped configuration does not have."""
+    keys = list(_keys(shipped))
+    for text in overrides:
+        try:
+            override = OverridesParser.create().parse_override(text)
+        except HydraException as error:
+            raise InputError(f"'{text}' is not an override of the form key=value") from error
+        key = override.key_or_group
+        if override.is_add() or override.is_force_add() or "/" in key or key.startswith("hydra"):
+            continue
+        if key not in keys:
+            raise InputError(f"unknown key '{key}': {nearest(key, keys)}")
+
+
+def _keys(node: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
+    for key, value in node.items():
+        yield prefix + key
+        if isinstance(value, Mapping):
+            yield from _keys(value, f"{prefix}{key}.")
+
+
+def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, dict[str, Any]]:
+    """Resolved configuration of every case of an experiment, checked: ``{case: plain dictionary}``."""
+    block = composed.get(experiment)
+    if not isinstance(block, Mapping):
+        raise InputError(f"experiment '{experiment}' has no block in its chapter's configuration")
+    base = {key: value for key, value in block.items() if key != "cases"}
+    result: dict[str, dict[str, Any]] = {}
+    for name, overrides in _expanded(block.get("cases") or {"default": {}}, composed, experiment):
+        merged = copy.deepcopy(base)
+        for key, value in overrides.items():
+            _assign(merged, key, copy.deepcopy(value), f"{experiment}.cases.{name}")
+        result[name] = _resolve(composed, experiment, merged)
+        check_values(result[name], experiment)
+    return result
+
+
+def resolved_block(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
+    """The experiment's own block, resolved, without its cases."""
+    block = {key: value for key, value in composed[experiment].items() if key != "cases"}
+    return _resolve(composed, experiment, block)
+
+
+def _expanded(
+    cases: Mapping[str, Any], composed: Mapping[str, Any], experiment: str
+) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    for name, overrides in cases.items():
+        overrides = overrides or {}
+        if "each" not in overrides:
+            yield name, overrides
+            continue
+        key = overrides["each"]
+        rest = {other: value for other, value in overrides.items() if other != "each"}
+        values: Any = resolved_block(composed, experiment)
+        for part in key.split("."):
+            values = values[part]
+        for value in values if isinstance(values, list) else [values]:
+            yield f"{name}{_label(value)}", {**rest, key: value}
+
+
+def _label(value: Any) -> str:
+    return (f"{value:g}" if isinstance(value, float) else str(value)).replace(".", "p").replace("-", "m")
+
+
+def _assign(node: dict[str, Any], dotted: str, value: Any, where: str) -> None:
+    *parents, last = dotted.split(".")
+    for part in parents:
+        if not isinstance(node.get(part), dict):
+            raise InputError(f"{where}: unknown key '{dotted}': {nearest(part, node)}")
+        node = node[part]
+    if last not in node:
+        raise InputError(f"{where}: unknown key '{dotted}': {nearest(last, node)}")
+    if isinstance(value, dict) and isinstance(node[last], dict) and "_target_" not in value:
+        for key, item in value.items():
+            _assign(node[last], key, item, f"{where}.{last}")
+    else:
+        node[last] = value
+
+
+def _resolve(composed: Mapping[str, Any], experiment: str, block: Mapping[str, Any]) -> dict[str, Any]:
+    names = {key: value for key, value in composed.items() if key != "hydra"}
+    config = OmegaConf.create({**names, experiment: dict(block)})
+    try:
+        return OmegaConf.to_container(config[experiment], resolve=True)  # type: ignore[return-value]
+    except OmegaConfBaseException as error:
+        raise InputError(f"{experiment}: {' '.join(str(error).split())}") from error
+
+
+# ------------------------------------------------------------------------------------------------------- checking
+
+_POSITIVE = re.compile(
+    r"(^|_)(mass|masses|lengths?|period|step|duration|inertia|samples|repetitions|substeps|time_constant|radius)$"
+)
+_NOT_NEGATIVE = re.compile(r"(^|_)(stiffness|damping|friction|noise|noise_std|delay|width|height|cutoff|tolerance)$")
+
+
+def check_values(config: Mapping[str, Any], where: str) -> None:
+    """Refuse values outside their physical range, in one sentence that names key, value and range."""
+    for key, value in _leaves(config):
+        name = next((part for part in reversed(key.split(".")) if not part.isdigit()), key)
+        if not isinstance(value, int | float) or isinstance(value, bool):
+            continue
+        if not math.isfinite(value):
+            raise InputError(f"{where}.{key} = {value} is not allowed: it must be a finite number")
+        if _POSITIVE.search(name) and value <= 0:
+            raise InputError(f"{where}.{key} = {value} is not allowed: it must be greater than 0")
+        if _NOT_NEGATIVE.search(name) and value < 0:
+            raise InputError(f"{where}.{key} = {value} is not allowed: it must be 0 or greater")
+    leaves = dict(_leaves(config))
+    steps = [v for k, v in leaves.items() if k.rpartition(".")[2] in ("control_period", "step") and _number(v)]
+    for key, value in leaves.items():
+        if key.rpartition(".")[2] == "duration" and _number(value) and steps and value < min(steps):
+            raise InputError(
+                f"{where}.{key} = {value} is not allowed: it must be at least one step of {min(steps):g} s"
+            )
+
+
+def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
+    """Refuse a text where the shipped configuration has a number."""
+    expected = dict(_leaves(shipped))
+    for key, value in _leaves(config):
+        if _number(expected.get(key)) and isinstance(value, str):
+            raise InputError(f"{where}.{key} = '{value}' is not allowed: it must be a number")
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _leaves(node: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
+    items: Iterable[tuple[Any, Any]] = ()
+    if isinstance(node, Mapping):
+        items = node.items()
+    elif isinstance(node, list):
+        items = enumerate(node)
+    else:
+        yield prefix, node
+    for key, value in items:
+        yield from _leaves(value, f"{prefix}.{key}" if prefix else str(key))
+
+
+def differences(config: Mapping[str, Any], shipped: Mapping[str, Any]) -> list[str]:
+    """Keys in which two configurations differ, as ``key=value (book: value)``."""
+    mine, theirs = dict(_entries(config)), dict(_entries(shipped))
+    absent = "absent"
+    return [
+        f"{key}={mine.get(key, absent)} (book: {theirs.get(key, absent)})"
+        for key in dict.fromkeys([*mine, *theirs])
+        if mine.get(key, absent) != theirs.get(key, absent)
+    ]
+
+
+def _entries(node: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in node.items():
+        if isinstance(value, Mapping) and value:
+            yield from _entries(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value

@@ -1,0 +1,51 @@
+"""What there is: chapters, experiments, cases, figures, tables, claims and errata, as plain data."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from dexrepro import chapters
+from dexrepro.config import compose_chapter, experiment_cases
+
+
+def listing() -> dict[str, Any]:
+    """The data behind ``dexrepro list --json``."""
+    return {"chapters": [_chapter(number) for number in chapters.numbers()]}
+
+
+def _chapter(number: str) -> dict[str, Any]:
+    chapter, composed = chapters.load(number), compose_chapter(number)
+    return {
+        "chapter": number,
+        "title": chapter.title,
+        "experiments": [
+            {
+                "name": experiment.name,
+                "summary": experiment.summary,
+                "cases": list(experiment_cases(composed, experiment.name)),
+                "figures": list(experiment.figures),
+                "tables": list(experiment.tables),
+            }
+            for experiment in chapter.experiments
+        ],
+        "claims": [
+            {
+                "id": claim.id,
+                "figure": claim.figure,
+                "statement": claim.statement,
+                "predicate": str(claim.predicate or f"not testable: {claim.not_testable}"),
+                "source": claim.source,
+            }
+            for claim in chapter.claims
+        ],
+        "errata": [
+            {
+                "id": erratum.id,
+                "equation": erratum.equation,
+                "kind": erratum.kind,
+                "summary": erratum.summary,
+                "switch": erratum.switch,
+            }
+            for erratum in chapter.errata
+        ],
+    }

@@ -1,0 +1,158 @@
+"""How figures look: one style, one palette whose colours keep their meaning, and saving as PNG and SVG."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+MM = 1 / 25.4
+ONE_COLUMN = 85 * MM  # inch
+TWO_COLUMNS = 178 * MM
+
+# Okabe-Ito, safe for colour-blind readers. A colour keeps its meaning in all chapters.
+BOOK = "#0072B2"  # the book's method
+RIVAL = "#E69F00"  # its strongest rival
+PLAIN = "#8C8C8C"  # a plain baseline
+REFERENCE = "#000000"  # what should be followed; dashed
+PRINTED = "#D55E00"  # the uncorrected form of an equation; dotted
+EXTRA = ("#009E73", "#CC79A7", "#56B4E9", "#F0E442")  # further cases, in this order
+
+# Keyword arguments for Axes.plot: every curve is told apart by its line style too.
+LINES: dict[str, dict[str, Any]] = {
+    "book": {"color": BOOK, "linestyle": "-"},
+    "rival": {"color": RIVAL, "linestyle": "-."},
+    "plain": {"color": PLAIN, "linestyle": (0, (5, 1))},
+    "reference": {"color": REFERENCE, "linestyle": "--", "linewidth": 0.8},
+    "printed": {"color": PRINTED, "linestyle": ":"},
+    "extra1": {"color": EXTRA[0], "linestyle": (0, (3, 1, 1, 1))},
+    "extra2": {"color": EXTRA[1], "linestyle": (0, (1, 1))},
+    "extra3": {"color": EXTRA[2], "linestyle": (0, (7, 2))},
+}
+
+_PARAMETERS: Any = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.labelsize": 8,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.6,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "lines.linewidth": 1.1,
+    "axes.grid": False,
+    "grid.linewidth": 0.4,
+    "grid.color": "#DDDDDD",
+    "figure.constrained_layout.use": True,
+    "savefig.dpi": 200,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "dexrepro",
+    "path.simplify": True,
+    "path.simplify_threshold": 0.5,
+}
+
+
+@contextlib.contextmanager
+def style() -> Iterator[None]:
+    """The style of all figures; the runner draws inside it."""
+    with plt.rc_context(_PARAMETERS):
+        yield
+
+
+def subplots(
+    rows: int = 1, columns: int = 1, *, width: float = TWO_COLUMNS, height: float = 2.2, **options: Any
+) -> Any:
+    """``plt.subplots`` at a column's width; height in inches. Small multiples: pass sharex / sharey."""
+    return plt.subplots(rows, columns, figsize=(width, height), **options)
+
+
+def title(figure: Figure, text: str) -> None:
+    """The finding, above all panels, left-aligned."""
+    figure.suptitle(text, x=0.01, ha="left", fontsize=9, fontweight="bold")
+
+
+def panel(axes: Axes, letter: str, text: str = "") -> None:
+    """Name a panel: (a), (b), ..."""
+    axes.set_title(f"({letter}) {text}".rstrip())
+
+
+def event(axes: Axes, time: float, word: str) -> None:
+    """A thin vertical line with a word: contact, switching, a trigger."""
+    axes.axvline(time, color="#444444", linewidth=0.6)
+    axes.annotate(
+        word,
+        (time, 1),
+        xycoords=("data", "axes fraction"),
+        xytext=(2, -2),
+        textcoords="offset points",
+        fontsize=6.5,
+        va="top",
+    )
+
+
+def band(axes: Axes, x: Any, low: Any, high: Any, **options: Any) -> None:
+    """A prescribed bound or a tolerance, shaded."""
+    axes.fill_between(x, low, high, color="#BBBBBB", alpha=0.35, linewidth=0, **options)
+
+
+def phase(axes: Axes, start: float, end: float, word: str = "", color: str = "#EAF2F8") -> None:
+    """A phase as a light background with its name at the top."""
+    axes.axvspan(start, end, color=color, linewidth=0, zorder=-10)
+    if word:
+        axes.annotate(
+            word,
+            ((start + end) / 2, 1),
+            xycoords=("data", "axes fraction"),
+            xytext=(0, -2),
+            textcoords="offset points",
+            fontsize=6.5,
+            ha="center",
+            va="top",
+            color="#555555",
+        )
+
+
+def label_end(axes: Axes, line: Any, text: str, dy: float = 0) -> None:
+    """Name a curve at its end, in its colour, instead of in a legend."""
+    x, y = line.get_xdata()[-1], line.get_ydata()[-1]
+    axes.annotate(
+        text,
+        (x, y),
+        xytext=(3, dy),
+        textcoords="offset points",
+        color=line.get_color(),
+        fontsize=7,
+        va="center",
+        annotation_clip=False,
+    )
+
+
+def file_stem(figure_id: str) -> str:
+    """ "2.7" -> "fig_2_07", "2.A" -> "fig_2_A", "2.9a" -> "fig_2_09a"."""
+    chapter, _, rest = figure_id.partition(".")
+    digits = "".join(c for c in rest if c.isdigit())
+    return f"fig_{chapter}_{digits.zfill(2)}{rest[len(digits) :]}" if digits else f"fig_{chapter}_{rest}"
+
+
+def save(figure: Figure, folder: Path, figure_id: str) -> None:
+    """Write PNG (200 dpi) and SVG (text as text), free of dates, and close the figure."""
+    stem = folder / file_stem(figure_id)
+    figure.savefig(stem.with_suffix(".png"), metadata={"Software": None})
+    figure.savefig(stem.with_suffix(".svg"), metadata={"Date": None, "Creator": "dexrepro"})
+    plt.close(figure)

@@ -1,0 +1,521 @@
+"""From configurations to files: plan the cases, run what the cache lacks in one pool, assemble whole results."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import hashlib
+import importlib.util
+import json
+import multiprocessing
+import os
+import platform
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import traceback
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from dexrepro import __version__, chapters
+from dexrepro.config import (
+    InputError,
+    check_types,
+    compose_chapter,
+    differences,
+    experiment_cases,
+    nearest,
+    resolved_block,
+)
+from dexrepro.experiment import Config, Experiment, Metrics, Recording
+from dexrepro.progress import Progress, Silent
+from dexrepro.storage import (
+    finite,
+    load_recording,
+    locked,
+    read_json,
+    remove_leftovers,
+    save_recording,
+    whole_folder,
+    write_json,
+)
+
+PACKAGES = ("numpy", "scipy", "pybullet", "pandas", "matplotlib", "hydra-core")
+NUMERICAL = ("numpy", "scipy", "pybullet")  # those whose version can change a number
+SUMMARY = "summary"  # stands for the numbers over several cases in nested metrics
+KEPT = 6  # cached results a case
+
+
+@dataclass(frozen=True)
+class Job:
+    """One case to simulate and measure."""
+
+    chapter: str
+    experiment: str
+    case: str
+    config: dict[str, Any]
+    seed: int
+    folder: str
+    gui: bool = False
+
+    @property
+    def name(self) -> str:
+        return f"{self.experiment}.{self.case}"
+
+
+@dataclass
+class Plan:
+    """One experiment to run: its cases and where its result goes."""
+
+    chapter: str
+    experiment: str
+    block: dict[str, Any]
+    jobs: list[Job]
+    folder: Path
+    seed: int
+    differs: list[str] = field(default_factory=list)
+
+    @property
+    def fingerprint(self) -> str:
+        """Changes with anything a result depends on, drawing code included."""
+        keys = [Path(job.folder).name for job in self.jobs]
+        return _digest([keys, source_digest(self.chapter, with_report=True), __version__])
+
+
+@dataclass
+class Outcome:
+    """What a run did: result folders, failures as sentences, experiments skipped with the reason."""
+
+    folders: dict[str, Path] = field(default_factory=dict)
+    failures: dict[str, str] = field(default_factory=dict)
+    skipped: dict[str, str] = field(default_factory=dict)
+    differs: dict[str, list[str]] = field(default_factory=dict)
+
+
+# -------------------------------------------------------------------------------------------------------- planning
+
+
+def plan_chapter(
+    chapter: str,
+    overrides: Sequence[str] = (),
+    *,
+    composed: Mapping[str, Any] | None = None,
+    perturbation: float = 0.0,
+    extra_dir: str | None = None,
+) -> tuple[list[Plan], dict[str, str]]:
+    """Plans of the experiments that the configuration selects, and those skipped with the reason."""
+    if chapter not in chapters.numbers():
+        raise InputError(f"unknown chapter '{chapter}'; chapters: {', '.join(chapters.numbers())}")
+    config = composed if composed is not None else compose_chapter(chapter, overrides, extra_dir)
+    shipped = compose_chapter(chapter)
+    results = writable(Path(config["results"]))
+    plans, skipped = [], {}
+    for experiment in select(chapter, config["only"], config["figure"]):
+        absent = [name for name in experiment.requires if importlib.util.find_spec(name) is None]
+        if absent:
+            skipped[experiment.name] = f"needs {', '.join(absent)} (an optional extra of dexrepro)"
+            continue
+        plans.append(_plan(chapter, experiment.name, config, shipped, results, perturbation))
+    return plans, skipped
+
+
+def _plan(
+    chapter: str,
+    name: str,
+    config: Mapping[str, Any],
+    shipped: Mapping[str, Any],
+    results: Path,
+    perturbation: float,
+) -> Plan:
+    cases, book = experiment_cases(config, name), experiment_cases(shipped, name)
+    for case, values in cases.items():
+        check_types(values, book.get(case, next(iter(book.values()))), name)
+    seed = config["seed"]
+    if not isinstance(seed, int):
+        raise InputError(f"seed = {seed!r} is not allowed: it must be a whole number of 0 or greater")
+    block = resolved_block(config, name)
+    differs = differences(block, resolved_block(shipped, name))
+    differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
+    differs = differs or differences(cases, book)  # a shared value that only a case refers to
+    differs += differences({"seed": seed}, {"seed": shipped["seed"]})
+    folder = results / f"chapter{chapter}" / name
+    if differs:
+        folder = results / "runs" / f"{name}-{_digest([cases, seed])[:10]}"
+    jobs = []
+    for case, values in cases.items():
+        values = {**values, "perturbation": perturbation, "seed": seed, "case": case}
+        key = _digest([name, values, source_digest(chapter), [version(package) for package in NUMERICAL]])
+        cached = results / ".cache" / name / f"{case}-{key[:16]}"
+        jobs.append(Job(chapter, name, case, values, seed, str(cached), bool(config["gui"])))
+    return Plan(chapter, name, block, jobs, folder, seed, differs)
+
+
+def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[Experiment]:
+    """The experiments of a chapter named by ``only`` and those that make ``figure`` (a figure or table id)."""
+    experiments = chapters.load(chapter).experiments
+    names = [experiment.name for experiment in experiments]
+    wanted = names if only is None else [only] if isinstance(only, str) else list(only)
+    for name in wanted:
+        if name not in names:
+            raise InputError(f"unknown experiment '{name}' in chapter {chapter}: {nearest(str(name), names)}")
+    selected = [experiment for experiment in experiments if experiment.name in wanted]
+    if figure is None:
+        return selected
+    made = [e for e in selected if any(matches(str(figure), i) for i in (*e.figures, *e.tables))]
+    if not made:
+        ids = [identifier for e in selected for identifier in (*e.figures, *e.tables)]
+        raise InputError(f"unknown figure '{figure}' in chapter {chapter}: {nearest(str(figure), ids)}")
+    return made
+
+
+def matches(wanted: str, identifier: str) -> bool:
+    """Whether "2.9" or "2.9a" names the figure "2.9a" (a number names all its panels)."""
+    return wanted == identifier or (identifier.startswith(wanted) and identifier[len(wanted) :].isalpha())
+
+
+def writable(results: Path) -> Path:
+    """The results folder, made if needed. Raises InputError where nothing can be written."""
+    try:
+        (results / ".cache").mkdir(parents=True, exist_ok=True)
+        probe = results / ".cache" / f".probe-{os.getpid()}"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise InputError(f"results = {results} is not allowed: cannot write there ({error.strerror})") from error
+    return results
+
+
+def _digest(data: Any) -> str:
+    return hashlib.sha1(json.dumps(finite(data), sort_keys=True, default=str).encode()).hexdigest()
+
+
+@cache
+def source_digest(chapter: str, with_report: bool = False) -> str:
+    """Hash of the code a case depends on: everything but other chapters, and but report/ unless asked for."""
+    root = Path(__file__).parent
+    digest = hashlib.sha1()
+    for path in sorted(root.rglob("*.py")):
+        parts = path.relative_to(root).parts
+        if parts[0] == "chapters" and len(parts) > 2 and parts[1] != f"chapter{chapter}":
+            continue
+        if parts[0] in ("cli.py", "baselines.py", "progress.py") or (parts[0] == "report" and not with_report):
+            continue
+        digest.update(str(parts).encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+# --------------------------------------------------------------------------------------------------------- running
+
+
+def generator(seed: int, experiment: str, purpose: str) -> np.random.Generator:
+    """The random numbers of one purpose: the same in all cases of an experiment."""
+    entropy = [seed, zlib.crc32(experiment.encode()), zlib.crc32(purpose.encode())]
+    return np.random.default_rng(np.random.SeedSequence(entropy))
+
+
+def live(config: Mapping[str, Any]) -> Config:
+    """A configuration whose ``_target_`` nodes are objects."""
+    from hydra.utils import instantiate
+
+    if "_target_" in json.dumps(finite(config), default=str):
+        config = instantiate(dict(config), _convert_="all")
+    return Config.of(config)
+
+
+def execute(job: Job) -> dict[str, Any]:
+    """Simulate, measure and store one case; returns its entry for run.json."""
+    experiment = chapters.load(job.chapter).experiment(job.experiment)
+    start = time.perf_counter()
+    try:
+        config = live(job.config)
+    except Exception as error:
+        cause = error.__cause__ or error
+        raise InputError(f"cannot build the objects of the configuration: {cause}") from error
+    recording: Recording = experiment.module.simulate(
+        config, lambda purpose: generator(job.seed, job.experiment, purpose)
+    )
+    wall = time.perf_counter() - start
+    measured: Metrics = experiment.module.measure(recording, config)
+    entry = {
+        "status": recording.status,
+        "steps": recording.steps,
+        "simulated": recording.simulated,
+        "wall": wall,
+        "real_time_factor": recording.simulated / wall if recording.simulated else None,
+    }
+    with whole_folder(Path(job.folder)) as folder:
+        save_recording(recording, folder / "series", job.case, experiment.rate)
+        write_json(folder / "case.json", {"entry": entry, "metrics": measured, "config": job.config})
+    return entry
+
+
+def assemble(plan: Plan) -> None:
+    """Turn the cached cases of a plan into a result folder with metrics, claims, tables, figures and provenance."""
+    experiment = chapters.load(plan.chapter).experiment(plan.experiment)
+    cases = {job.case: read_json(Path(job.folder) / "case.json") for job in plan.jobs}
+    nested: dict[str, Metrics] = {case: data["metrics"] for case, data in cases.items()}
+    configs = {case: data["config"] for case, data in cases.items()}
+    config = Config.of({**plan.block, "cases": configs})
+    summarise(experiment, nested, config)
+    with whole_folder(plan.folder) as folder:
+        (folder / "series").mkdir()
+        for job in plan.jobs:
+            for path in sorted((Path(job.folder) / "series").glob("*")):
+                _link(path, folder / "series" / path.name)
+        (folder / "config.yaml").write_text(yaml.safe_dump(finite(config), sort_keys=False, allow_unicode=True))
+        write_json(folder / "metrics.json", flat(experiment.name, nested))
+        write_json(folder / "run.json", _run_entry(plan, {case: data["entry"] for case, data in cases.items()}))
+        present(plan.chapter, experiment, folder)
+    _prune(plan)
+
+
+def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config) -> None:
+    """Add the numbers over several cases to nested metrics."""
+    if experiment.has("summarise"):
+        nested[SUMMARY] = experiment.module.summarise(nested, config)
+
+
+def present(chapter: str, experiment: Experiment, folder: Path) -> None:
+    """Evaluate claims, draw figures and write tables in a result folder, from its files alone."""
+    from dexrepro.report import style
+
+    run = read_json(folder / "run.json")
+    flat_metrics = read_json(folder / "metrics.json")
+    config = Config.of(yaml.safe_load((folder / "config.yaml").read_text()))
+    nested: dict[str, Metrics] = {case: {} for case in run["cases"]}
+    for name, value in flat_metrics.items():
+        _, first, *rest = name.split(".", 2)
+        nested.setdefault(first if rest else SUMMARY, {})[rest[0] if rest else first] = value
+    recordings = {
+        case: load_recording(folder / "series", case, entry["status"]) for case, entry in run["cases"].items()
+    }
+    claims = [claim.evaluate(flat_metrics) for claim in chapters.load(chapter).claims_of(experiment.name)]
+    write_json(folder / "claims.json", claims)
+    for name in ("tables", "figures"):
+        shutil.rmtree(folder / name, ignore_errors=True)
+        (folder / name).mkdir()
+    if experiment.has("tabulate"):
+        for identifier, table in experiment.module.tabulate(recordings, nested, config).items():
+            table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
+    if experiment.has("draw"):
+        with style.style():
+            for identifier, figure in experiment.module.draw(recordings, nested, config).items():
+                style.save(figure, folder / "figures", identifier)
+
+
+def redraw(numbers: Sequence[str], results: Path, only: Sequence[str] = ()) -> Iterator[Path]:
+    """Present again every result there is of some chapters; yields their folders. Nothing is simulated."""
+    for number in numbers:
+        for experiment in select(number, list(only) or None, None):
+            target = results / f"chapter{number}" / experiment.name
+            if not (target / "run.json").exists():
+                continue
+            with whole_folder(target) as folder:
+                shutil.copytree(target, folder, dirs_exist_ok=True, copy_function=_link)
+                present(number, experiment, folder)
+            yield target
+
+
+def flat(experiment: str, nested: Mapping[str, Metrics]) -> Metrics:
+    """``experiment.case.metric`` and, for numbers over several cases, ``experiment.metric``."""
+    return {
+        f"{experiment}.{name}" if case == SUMMARY else f"{experiment}.{case}.{name}": value
+        for case, metrics in nested.items()
+        for name, value in metrics.items()
+    }
+
+
+def _run_entry(plan: Plan, entries: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    simulated = sum(entry["simulated"] for entry in entries.values())
+    wall = sum(entry["wall"] for entry in entries.values())
+    return {
+        "chapter": plan.chapter,
+        "experiment": plan.experiment,
+        "version": __version__,
+        "revision": revision(),
+        "seed": plan.seed,
+        "fingerprint": plan.fingerprint,
+        "differs": plan.differs,
+        "packages": {name: version(name) for name in PACKAGES},
+        "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        "python": platform.python_version(),
+        "wall": wall,
+        "steps": sum(entry["steps"] for entry in entries.values()),
+        "simulated": simulated,
+        "real_time_factor": simulated / wall if simulated and wall else None,
+        "cases": entries,
+    }
+
+
+@cache
+def revision() -> str | None:
+    """Git revision of the checkout this code runs from, with "+" where files have been changed."""
+    git = ["git", "-C", str(Path(__file__).parent)]
+    with contextlib.suppress(OSError, subprocess.CalledProcessError):
+        head = subprocess.run([*git, "rev-parse", "--short=12", "HEAD"], capture_output=True, text=True, check=True)
+        dirty = subprocess.run([*git, "status", "--porcelain", "--untracked-files=no"], capture_output=True, text=True)
+        return head.stdout.strip() + ("+" if dirty.stdout.strip() else "")
+    return None
+
+
+def _link(source: str | Path, target: str | Path) -> None:
+    try:
+        os.link(source, target)
+    except OSError:  # other file system
+        shutil.copy2(source, target)
+
+
+def _prune(plan: Plan) -> None:
+    for job in plan.jobs:
+        parent = Path(job.folder).parent
+        with locked(parent):
+            entries = sorted(parent.glob(f"{job.case}-" + "?" * 16), key=lambda p: p.stat().st_mtime, reverse=True)
+            for old in entries[KEPT:]:
+                if str(old) != job.folder:
+                    shutil.rmtree(old, ignore_errors=True)
+
+
+# ------------------------------------------------------------------------------------------------------------ pool
+
+
+def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progress: Progress | None = None) -> Outcome:
+    """Run what is missing, assemble what is complete; a failing case does not stop the others."""
+    progress = progress or Silent()
+    outcome = Outcome(differs={plan.experiment: plan.differs for plan in plans})
+    waiting: dict[str, set[str]] = {}
+    todo: list[Job] = []
+    for plan in plans:
+        if not force and _up_to_date(plan):
+            outcome.folders[plan.experiment] = plan.folder
+            continue
+        remove_leftovers(Path(plan.jobs[0].folder).parent)
+        missing = [job for job in plan.jobs if force or not (Path(job.folder) / "case.json").exists()]
+        waiting[plan.experiment] = {job.case for job in missing}
+        todo += missing
+    if not waiting:
+        return outcome
+    by_name = {plan.experiment: plan for plan in plans}
+    with _pool(workers or available_cores(), progress, in_process=any(job.gui for job in todo)) as submit:
+        pending: dict[Future[Any], Job | Plan] = {submit(execute, job): job for job in todo}
+        pending |= {submit(assemble, by_name[name]): by_name[name] for name, cases in waiting.items() if not cases}
+        progress.begin(len(todo))
+        while pending:
+            done, _ = wait(pending, timeout=0.2, return_when=FIRST_COMPLETED)
+            progress.refresh()
+            for future in done:
+                task = pending.pop(future)
+                name = task.name if isinstance(task, Job) else task.experiment
+                try:
+                    value = future.result()
+                except BrokenProcessPool:
+                    outcome.failures[name] = "its process was killed; the same command completes what is missing"
+                except BaseException as error:
+                    outcome.failures[name] = _sentence(error)
+                    _keep_traceback(task, error)
+                else:
+                    if isinstance(task, Plan):
+                        outcome.folders[task.experiment] = task.folder
+                        progress.assembled(task.experiment)
+                        continue
+                    progress.finished(task.name, value)
+                    waiting[task.experiment].discard(task.case)
+                    if not waiting[task.experiment]:
+                        plan = by_name[task.experiment]
+                        with contextlib.suppress(BrokenProcessPool):
+                            pending[submit(assemble, plan)] = plan
+                    continue
+                if isinstance(task, Job):
+                    progress.failed(task.name, outcome.failures[name])
+    return outcome
+
+
+def _up_to_date(plan: Plan) -> bool:
+    try:
+        return bool(read_json(plan.folder / "run.json")["fingerprint"] == plan.fingerprint)
+    except (OSError, ValueError, KeyError):
+        return False
+
+
+def _sentence(error: BaseException) -> str:
+    text = " ".join(str(error).split())
+    return text if isinstance(error, InputError) else f"{type(error).__name__}: {text}"
+
+
+def _keep_traceback(task: Job | Plan, error: BaseException) -> None:
+    folder = Path(task.folder if isinstance(task, Job) else task.jobs[0].folder).parent
+    name = task.case if isinstance(task, Job) else "assemble"
+    with contextlib.suppress(OSError):
+        (folder / f"{name}.error.txt").write_text("".join(traceback.format_exception(error)))
+
+
+def available_cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextlib.contextmanager
+def _pool(workers: int, progress: Progress, in_process: bool) -> Iterator[Any]:
+    if in_process:
+        yield _run_here
+        return
+    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
+    queue = context.SimpleQueue()
+    progress.listen(queue)
+    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker, initargs=(queue,))
+    try:
+        yield pool.submit
+    except BaseException:
+        for process in list(pool._processes.values()):
+            process.kill()
+        pool.shutdown(wait=False, cancel_futures=True)
+        raise
+    pool.shutdown()
+
+
+def _run_here(function: Any, argument: Any) -> Future[Any]:
+    future: Future[Any] = Future()
+    try:
+        future.set_result(function(argument))
+    except Exception as error:
+        future.set_exception(error)
+    return future
+
+
+_queue: Any = None
+
+
+def _begin_worker(queue: Any) -> None:
+    """Leave Ctrl-C to the parent, die with it, use one BLAS thread, and report simulated time."""
+    from threadpoolctl import threadpool_limits
+
+    from dexrepro.physics import world
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)
+    threadpool_limits(1)
+    world.on_progress = lambda simulated, duration: queue.put((os.getpid(), simulated, duration))
+
+
+def summary_rows(outcome: Outcome) -> list[dict[str, Any]]:
+    """One row an experiment for the table at the end: wall time, real-time factor, claims by verdict."""
+    rows = []
+    for name, folder in outcome.folders.items():
+        run, claims = read_json(folder / "run.json"), read_json(folder / "claims.json")
+        verdicts: dict[str, int] = {}
+        for claim in claims:
+            verdicts[claim["verdict"]] = verdicts.get(claim["verdict"], 0) + 1
+        timing = {key: run[key] for key in ("wall", "simulated", "real_time_factor")}
+        rows.append({"experiment": name, "folder": str(folder), "claims": verdicts, **timing})
+    return rows
