@@ -1,0 +1,98 @@
+"""A rigid-body model of one arm: what a control law may know of the robot it moves."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Sequence
+
+import numpy as np
+import pybullet as bullet
+from numpy.typing import NDArray
+
+from dexrepro.physics.loading import connect, load_arm
+from dexrepro.physics.plant import EndPoint
+from dexrepro.robots.arm import Arm
+
+Array = NDArray[np.float64]
+
+
+class RigidBodyModel:
+    """Mass matrix, bias torque, gravity, Jacobian and pose of an arm, from a physics client that is never stepped.
+
+    arm: joint angles are measured and the world frame lies as in the arm's own description (its base included).
+    mass_error: every mass and inertia is (1 + mass_error) times that of the arm, -0.3 for a model 30 % too light.
+    gravity: (3,) [m/s^2]. All arguments q, dq, ddq have shape (n,) [rad, rad/s, rad/s^2].
+    """
+
+    def __init__(self, arm: Arm, gravity: Sequence[float] = (0.0, 0.0, -9.81), mass_error: float = 0.0) -> None:
+        self.arm = arm.scaled(1.0 + mass_error) if mass_error else arm
+        self.dof = arm.dof
+        self._client = connect()
+        self._close = weakref.finalize(self, _disconnect, self._client)
+        self._body = load_arm(self._client, self.arm)
+        bullet.setGravity(*gravity, physicsClientId=self._client)
+        self._zeros = [0.0] * arm.dof
+        self._end = EndPoint(self._client, self._body, arm)
+
+    def close(self) -> None:
+        """Give the physics client back; also done when the model is no longer used."""
+        self._close()
+
+    def mass_matrix(self, q: Array) -> Array:
+        """M(q), shape (n, n) [kg m^2]."""
+        return np.array(bullet.calculateMassMatrix(self._body, _list(q), physicsClientId=self._client))
+
+    def inverse_dynamics(self, q: Array, dq: Array, ddq: Array) -> Array:
+        """M(q) ddq + C(q, dq) dq + G(q), shape (n,) [N m]."""
+        torque = bullet.calculateInverseDynamics(
+            self._body, _list(q), _list(dq), _list(ddq), physicsClientId=self._client
+        )
+        return np.array(torque)
+
+    def bias(self, q: Array, dq: Array) -> Array:
+        """C(q, dq) dq + G(q), shape (n,) [N m]."""
+        torque = bullet.calculateInverseDynamics(
+            self._body, _list(q), _list(dq), self._zeros, physicsClientId=self._client
+        )
+        return np.array(torque)
+
+    def gravity(self, q: Array) -> Array:
+        """G(q), the torque that holds the arm still, shape (n,) [N m]."""
+        torque = bullet.calculateInverseDynamics(
+            self._body, _list(q), self._zeros, self._zeros, physicsClientId=self._client
+        )
+        return np.array(torque)
+
+    def coriolis(self, q: Array, dq: Array) -> Array:
+        """C(q, dq) dq, shape (n,) [N m]."""
+        return self.bias(q, dq) - self.gravity(q)
+
+    def jacobian(self, q: Array) -> Array:
+        """Geometric Jacobian of the end point, shape (6, n): linear [m/rad] over angular rows, world frame."""
+        linear, angular = bullet.calculateJacobian(
+            self._body,
+            self._end.link,
+            self._end.for_jacobian,
+            _list(q),
+            self._zeros,
+            self._zeros,
+            physicsClientId=self._client,
+        )
+        return np.array(linear + angular)
+
+    def forward(self, q: Array) -> tuple[Array, Array]:
+        """Position (3,) [m] and rotation (3, 3) of the end point in the world frame."""
+        for index, angle in enumerate(_list(q)):
+            bullet.resetJointState(self._body, index, angle, physicsClientId=self._client)
+        state = bullet.getLinkState(self._body, self._end.link, 0, 1, physicsClientId=self._client)
+        rotation = np.array(bullet.getMatrixFromQuaternion(state[1])).reshape(3, 3)
+        return np.array(state[0]) + rotation @ self._end.from_com, rotation @ self._end.rotation
+
+
+def _list(values: Array) -> list[float]:
+    return values.tolist() if isinstance(values, np.ndarray) else list(values)
+
+
+def _disconnect(client: int) -> None:
+    if bullet.isConnected(client):
+        bullet.disconnect(physicsClientId=client)

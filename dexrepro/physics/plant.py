@@ -1,0 +1,327 @@
+"""What moves in a World while it runs: arms and rigid bodies, each a place where forces can act.
+
+Every one offers x, y, z [m], vx, vy, vz [m/s] (of an arm: its end point; of a body: its centre of mass), all in the
+world frame, and ``push(fx, fy, fz)`` [N]. Plain floats: at 1 kHz small arrays cost more than the physics.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pybullet as bullet
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from dexrepro.physics.loading import load_arm
+from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
+from dexrepro.robots.arm import Arm
+from dexrepro.robots.kinematics import forward
+
+
+class Point:
+    """A place fixed in the world."""
+
+    x = y = z = vx = vy = vz = 0.0
+
+    def __init__(self, position: tuple[float, float, float]) -> None:
+        self.x, self.y, self.z = map(float, position)
+
+    def push(self, fx: float, fy: float, fz: float) -> None:
+        """The world does not move."""
+
+
+class RigidBody(Point):
+    """A box, sphere or compound; static if its mass is 0."""
+
+    def __init__(self, client: int, body: int, mass: float) -> None:
+        super().__init__((0.0, 0.0, 0.0))
+        self.client, self.body, self.mass = client, body, mass
+        self.orientation = (0.0, 0.0, 0.0, 1.0)
+        self.spin = (0.0, 0.0, 0.0)
+        self.read()
+
+    def read(self) -> None:
+        (self.x, self.y, self.z), self.orientation = bullet.getBasePositionAndOrientation(
+            self.body, physicsClientId=self.client
+        )
+        (self.vx, self.vy, self.vz), self.spin = bullet.getBaseVelocity(self.body, physicsClientId=self.client)
+
+    def push(self, fx: float, fy: float, fz: float) -> None:
+        bullet.applyExternalForce(
+            self.body, -1, (fx, fy, fz), (self.x, self.y, self.z), bullet.WORLD_FRAME, physicsClientId=self.client
+        )
+
+
+class Sense:
+    """What one arm may know at an instant; nothing of its partner.
+
+    time [s]; position, velocity: joint angles and rates as measured, shape (n,) [rad, rad/s]; force: the force on its
+    end point as its sensor reports it, shape (3,), world frame [N]. The arrays are new at every instant.
+    """
+
+    __slots__ = ("_plant", "force", "position", "time", "velocity")
+
+    def __init__(self, plant: SimulatedArm) -> None:
+        self._plant = plant
+        self.time = 0.0
+        self.position = np.zeros(plant.dof)
+        self.velocity = np.zeros(plant.dof)
+        self.force = np.zeros(3)
+
+    @property
+    def tip(self) -> NDArray[np.float64]:
+        """End point, shape (3,), world frame [m], from the measured joint angles."""
+        plant = self._plant
+        if plant.joint_channel is None:
+            plant.locate()
+            return np.array((plant.x, plant.y, plant.z))
+        return forward(plant.arm, self.position)[0]
+
+    @property
+    def tip_velocity(self) -> NDArray[np.float64]:
+        """Velocity of the end point, shape (3,), world frame [m/s], from exact joint rates."""
+        self._plant.locate()
+        return np.array((self._plant.vx, self._plant.vy, self._plant.vz))
+
+
+class SimulatedArm(Point):
+    """One arm in a World: its state, the forces on its end point and the torque it gets this step."""
+
+    def __init__(
+        self,
+        client: int,
+        name: str,
+        arm: Arm,
+        position: NDArray[np.float64],
+        sensor: Sensor,
+        rng: np.random.Generator | None,
+        saturate: bool,
+    ) -> None:
+        super().__init__((0.0, 0.0, 0.0))
+        self.client, self.name, self.arm, self.dof = client, name, arm, arm.dof
+        self.body = load_arm(client, arm)
+        self.links = [link.name for link in arm.links] + [link.name for _, link in arm.bodies]
+        self.feels_contact = False
+        self._indices = list(range(arm.dof))
+        self._zeros = [0.0] * arm.dof
+        self.limits = arm.effort if saturate and np.isfinite(arm.effort).any() else None
+        self._sensor, self._rng = sensor, rng
+        self.force_channel: ForceChannel | None = None
+        self.joint_channel: JointChannel | None = None
+        self.end = EndPoint(client, self.body, arm)
+        self._planar = _PlanarTip(arm) if arm.is_planar else None
+        self.load = self._zeros
+        self.q: list[float] = []
+        self.dq: list[float] = []
+        self.torque: Any = self._zeros
+        self.fx = self.fy = self.fz = 0.0
+        self._unsensed = (0.0, 0.0, 0.0)
+        self._located = False
+        self.reset(position)
+        self.sense = Sense(self)
+
+    def reset(self, position: NDArray[np.float64], velocity: NDArray[np.float64] | None = None) -> None:
+        """Put the joints at given angles [rad] and rates [rad/s] (at rest by default)."""
+        rates = self._zeros if velocity is None else np.asarray(velocity, dtype=float).tolist()
+        for index, angle, rate in zip(self._indices, np.asarray(position, dtype=float).tolist(), rates, strict=True):
+            bullet.resetJointState(self.body, index, angle, rate, physicsClientId=self.client)
+        self.read()
+
+    def prepare(self, period: float) -> None:
+        """Set up the sensors for a run with a control period [s]."""
+        sensor = self._sensor
+        self.force_channel = None if sensor.exact_force else ForceChannel(sensor, period, self._rng)
+        self.joint_channel = None if sensor.exact_joints else JointChannel(sensor, period, self._rng)
+
+    def read(self) -> None:
+        """Take the joint state from the engine and forget last step's forces."""
+        states = bullet.getJointStates(self.body, self._indices, physicsClientId=self.client)
+        self.q = [state[0] for state in states]
+        self.dq = [state[1] for state in states]
+        self._located = False
+        self.fx = self.fy = self.fz = 0.0
+        self._unsensed = (0.0, 0.0, 0.0)
+        self.load = self._zeros
+        if self.feels_contact:
+            self._feel()
+
+    def locate(self) -> None:
+        """Compute position and velocity of the end point for the joint state last read."""
+        if self._located:
+            return
+        self._located = True
+        if self._planar is not None:
+            self.x, self.y, self.vx, self.vy = self._planar(self.q, self.dq)
+            return
+        state = bullet.getLinkState(self.body, self.end.link, 1, 1, physicsClientId=self.client)
+        (cx, cy, cz), (rx, ry, rz) = state[0], _rotated(state[1], self.end.from_com)
+        (ux, uy, uz), (ox, oy, oz) = state[6], state[7]
+        self.x, self.y, self.z = cx + rx, cy + ry, cz + rz
+        self.vx, self.vy, self.vz = ux + oy * rz - oz * ry, uy + oz * rx - ox * rz, uz + ox * ry - oy * rx
+
+    def push(self, fx: float, fy: float, fz: float) -> None:
+        """Add a force on the end point [N], felt by the arm's force sensor."""
+        self.fx += fx
+        self.fy += fy
+        self.fz += fz
+        self._act(fx, fy, fz)
+
+    def push_unsensed(self, fx: float, fy: float, fz: float) -> None:
+        """Add a force on the end point [N] that the force sensor does not see."""
+        self._act(fx, fy, fz)
+
+    def push_link(self, link: str, point: tuple[float, float, float], force: tuple[float, float, float]) -> None:
+        """Add a force [N], world frame, at a point of a link frame [m]."""
+        index = self.links.index(link)
+        state = bullet.getLinkState(self.body, index, 0, 1, physicsClientId=self.client)
+        place = [a + b for a, b in zip(state[4], _rotated(state[5], point), strict=True)]
+        bullet.applyExternalForce(self.body, index, force, place, bullet.WORLD_FRAME, physicsClientId=self.client)
+
+    def add_load(self, torque: Any) -> None:
+        """Add joint torques [N m] that are not the controller's (friction, drag)."""
+        self.load = [a + float(b) for a, b in zip(self.load, torque, strict=True)]
+
+    def observe(self, time: float, sample: bool) -> Sense:
+        """Refresh what the controller sees; imperfect sensors deliver a new value only at control instants."""
+        sense = self.sense
+        sense.time = time
+        if self.joint_channel is None:
+            sense.position = np.array(self.q)
+            sense.velocity = np.array(self.dq)
+        elif sample:
+            sense.position, sense.velocity = self.joint_channel(np.array(self.q), np.array(self.dq))
+        if self.force_channel is None:
+            sense.force = np.array((self.fx, self.fy, self.fz))
+        elif sample:
+            sense.force = self.force_channel(np.array((self.fx, self.fy, self.fz)))
+        return sense
+
+    def command(self, torque: Any, damping: Any, step: float) -> None:
+        """Set this step's joint torque [N m], with damping [N m s/rad] applied implicitly, within the effort limits."""
+        if damping is not None:
+            torque = self._damped(np.asarray(torque, dtype=float), damping, step)
+        if self.limits is not None:
+            torque = np.minimum(np.maximum(torque, -self.limits), self.limits)
+        self.torque = torque.tolist() if isinstance(torque, np.ndarray) else torque
+
+    def apply(self) -> None:
+        """Hand torque and other joint loads to the engine for the coming step."""
+        total = self.torque
+        if self.load is not self._zeros:
+            total = [a + b for a, b in zip(total, self.load, strict=True)]
+        bullet.setJointMotorControlArray(
+            self.body, self._indices, bullet.TORQUE_CONTROL, forces=total, physicsClientId=self.client
+        )
+
+    def _damped(self, torque: NDArray[np.float64], damping: Any, step: float) -> NDArray[np.float64]:
+        """Torque minus damping times the velocity at the END of the step.
+
+        From M dq+ = M dq + h (torque + load - bias - D dq+) follows the acceleration a of (M + h D) a = torque + load
+        - bias - D dq, and the torque to apply is torque - D (dq + h a). D is a vector (diagonal) or a matrix.
+        """
+        body, client = self.body, self.client
+        damping = np.asarray(damping, dtype=float)
+        matrix = np.diag(damping) if damping.ndim == 1 else damping
+        rate = np.array(self.dq)
+        mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client))
+        bias = np.array(bullet.calculateInverseDynamics(body, self.q, self.dq, self._zeros, physicsClientId=client))
+        rest = torque + self.load - bias - matrix @ rate
+        if self._planar is None and (self.fx or self.fy or self.fz):
+            linear, _ = bullet.calculateJacobian(
+                body, self.end.link, self.end.for_jacobian, self.q, self.dq, self._zeros, physicsClientId=client
+            )
+            rest += np.array((self.fx, self.fy, self.fz)) @ np.array(linear)
+        acceleration = np.linalg.solve(mass + step * matrix, rest)
+        return torque - matrix @ (rate + step * acceleration)
+
+    def _act(self, fx: float, fy: float, fz: float) -> None:
+        self.locate()
+        if self._planar is not None:
+            self.load = self._planar.torque(self.load, fx, fy)
+        else:
+            bullet.applyExternalForce(
+                self.body, self.end.link, (fx, fy, fz), (self.x, self.y, self.z), bullet.WORLD_FRAME,
+                physicsClientId=self.client,
+            )  # fmt: skip
+
+    def _feel(self) -> None:
+        """Add last step's contact forces on the last moving link and what it carries to the sensed force."""
+        for contact in bullet.getContactPoints(bodyA=self.body, physicsClientId=self.client):
+            if contact[3] < self.dof - 1:
+                continue
+            normal, first, second = contact[7], contact[11], contact[13]
+            f, g, h = contact[9], contact[10], contact[12]
+            self.fx += f * normal[0] + g * first[0] + h * second[0]
+            self.fy += f * normal[1] + g * first[1] + h * second[1]
+            self.fz += f * normal[2] + g * first[2] + h * second[2]
+
+
+class EndPoint:
+    """Where an arm's end point is on the body that carries it, in the frames the engine asks for.
+
+    link: the engine's index of that body; from_com: place [m] from the centre of mass, along the principal axes;
+    for_jacobian: place [m] from the link's origin, along the principal axes, as calculateJacobian takes it; rotation:
+    of the end point's frame relative to the principal axes. (The engine's link frame itself is of single precision.)
+    """
+
+    def __init__(self, client: int, body: int, arm: Arm) -> None:
+        poses = [pose.matrix for pose, _ in arm.bodies]
+        self.link = arm.dof - 1 + len(poses)
+        local = arm.tip
+        for pose in poses:
+            local = np.linalg.inv(pose) @ local
+        info = bullet.getDynamicsInfo(body, self.link, physicsClientId=client)
+        axes = Rotation.from_quat(info[4]).as_matrix()
+        self.rotation = axes.T @ local[:3, :3]
+        self.from_com: tuple[float, ...] = tuple((axes.T @ (local[:3, 3] - info[3])).tolist())
+        self.for_jacobian: tuple[float, ...] = tuple((axes.T @ local[:3, 3]).tolist())
+
+
+def _rotated(quaternion: tuple[float, ...], vector: tuple[float, ...]) -> tuple[float, float, float]:
+    """A vector turned by a quaternion (x, y, z, w): v + 2 u x (u x v + w v)."""
+    i, j, k, w = quaternion
+    a, b, c = vector
+    x, y, z = j * c - k * b + w * a, k * a - i * c + w * b, i * b - j * a + w * c
+    return a + 2 * (j * z - k * y), b + 2 * (k * x - i * z), c + 2 * (i * y - j * x)
+
+
+class _PlanarTip:
+    """End point, its velocity and the torque of a tip force of a planar arm, in plain floats."""
+
+    def __init__(self, arm: Arm) -> None:
+        first = arm.origins[0]
+        self._base = float(first[0, 3]), float(first[1, 3])
+        turns, vectors = [], []
+        places = [*arm.origins[1:], arm.tip]
+        for origin, after in zip(arm.origins, places, strict=True):
+            turns.append(math.atan2(origin[1, 0], origin[0, 0]))
+            vectors.append((float(after[0, 3]), float(after[1, 3])))
+        self._geometry = list(zip(turns, vectors, strict=True))
+        self._arms: list[tuple[float, float]] = []
+
+    def __call__(self, q: list[float], dq: list[float]) -> tuple[float, float, float, float]:
+        angle, sides = 0.0, []
+        for (turn, (a, b)), joint in zip(self._geometry, q):
+            angle += turn + joint
+            c, s = math.cos(angle), math.sin(angle)
+            sides.append((c * a - s * b, s * a + c * b))
+        rx = ry = vx = vy = 0.0
+        arms = []
+        for (dx, dy), rate in zip(reversed(sides), reversed(dq)):
+            rx += dx
+            ry += dy
+            vx -= rate * ry
+            vy += rate * rx
+            arms.append((rx, ry))
+        arms.reverse()
+        self._arms = arms
+        return self._base[0] + rx, self._base[1] + ry, vx, vy
+
+    def torque(self, load: list[float], fx: float, fy: float) -> list[float]:
+        return [t + rx * fy - ry * fx for t, (rx, ry) in zip(load, self._arms)]
+
+
+Controller = Callable[[Sense], Any]

@@ -1,0 +1,314 @@
+"""A PyBullet world: what stands in it, and how to run it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import pybullet as bullet
+from numpy.typing import ArrayLike, NDArray
+
+from dexrepro.experiment import Recording
+from dexrepro.physics import loop
+from dexrepro.physics.elements import Element, Place
+from dexrepro.physics.loading import connect, undamped
+from dexrepro.physics.plant import Controller, Point, RigidBody, SimulatedArm
+from dexrepro.physics.rendering import Camera, photograph
+from dexrepro.physics.sensor import Sensor
+from dexrepro.robots.arm import GREY, Arm, Colour, Shape
+
+Vector = Sequence[float]
+SHAPES = {"box": bullet.GEOM_BOX, "sphere": bullet.GEOM_SPHERE, "cylinder": bullet.GEOM_CYLINDER,
+          "capsule": bullet.GEOM_CAPSULE}  # fmt: skip
+
+
+class Contact(NamedTuple):
+    """One touching point: names of the links in question, place (3,) on the second body [m], force [N]."""
+
+    link: str
+    position: tuple[float, float, float]
+    force: float
+
+
+class World:
+    """One physics client of its own, closed at the end of a ``with`` block; several may live side by side.
+
+    step: physics step [s]; gravity: (3,) [m/s^2]; perturbation: added to every initial joint angle [rad];
+    gui: open a window and run in real time; iterations: of the contact solver.
+    The world frame has z up; positions in m, forces in N.
+    """
+
+    def __init__(
+        self,
+        step: float = 1e-3,
+        gravity: Vector = (0.0, 0.0, -9.81),
+        perturbation: float = 0.0,
+        gui: bool = False,
+        iterations: int = 50,
+    ) -> None:
+        self.step, self.time, self.gui = step, 0.0, gui
+        self.perturbation = perturbation
+        self.client = connect(gui)
+        bullet.setGravity(*gravity, physicsClientId=self.client)
+        bullet.setPhysicsEngineParameter(
+            fixedTimeStep=step, numSubSteps=0, numSolverIterations=iterations, deterministicOverlappingPairs=1,
+            physicsClientId=self.client,
+        )  # fmt: skip
+        self.arms: dict[str, SimulatedArm] = {}
+        self.bodies: dict[str, RigidBody] = {}
+        self.elements: list[Element] = []
+
+    def __enter__(self) -> World:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Disconnect the physics client; the world cannot be used afterwards."""
+        if self.client >= 0:
+            bullet.disconnect(physicsClientId=self.client)
+            self.client = -1
+
+    def add_arm(
+        self,
+        name: str,
+        arm: Arm,
+        position: ArrayLike,
+        contacts: bool = False,
+        sensor: Sensor = Sensor(),
+        rng: np.random.Generator | None = None,
+        saturate: bool = True,
+    ) -> SimulatedArm:
+        """Place an arm with initial joint angles (n,) [rad], at rest.
+
+        contacts: whether its links touch other bodies (if so its force sensor feels contacts of the last link and
+        the tool). sensor, rng: imperfections of its sensors and the generator of their noise. saturate: clip torques
+        at the arm's effort limits.
+        """
+        self._check_new(name)
+        start = np.asarray(position, dtype=float) + self.perturbation
+        plant = SimulatedArm(self.client, name, arm, start, sensor, rng, saturate)
+        plant.feels_contact = contacts
+        if not contacts:
+            self._untouchable(plant.body)
+        self.arms[name] = plant
+        return plant
+
+    def add_body(
+        self,
+        name: str,
+        shapes: Sequence[Shape],
+        position: Vector,
+        rpy: Vector = (0.0, 0.0, 0.0),
+        mass: float = 0.0,
+        inertia: Vector | None = None,
+        friction: float = 0.5,
+        collides: bool = True,
+        **contact: float,
+    ) -> RigidBody:
+        """Place a rigid body of one or more shapes; static if its mass [kg] is 0.
+
+        friction: lateral coefficient (PyBullet multiplies those of two bodies). inertia: principal moments [kg m^2],
+        by default those of the shapes. contact: further arguments of PyBullet's changeDynamics, such as
+        spinningFriction, rollingFriction, contactStiffness with contactDamping, restitution.
+        """
+        self._check_new(name)
+        visual = self._shape_arrays(shapes, visual=True)
+        collision = self._shape_arrays(shapes, visual=False) if collides else -1
+        body = bullet.createMultiBody(
+            mass, collision, visual, list(position), bullet.getQuaternionFromEuler(list(rpy)),
+            physicsClientId=self.client,
+        )  # fmt: skip
+        undamped(self.client, body)
+        if inertia is not None:
+            contact["localInertiaDiagonal"] = list(inertia)  # type: ignore[assignment]
+        bullet.changeDynamics(body, -1, lateralFriction=friction, physicsClientId=self.client, **contact)
+        self.bodies[name] = RigidBody(self.client, body, mass)
+        return self.bodies[name]
+
+    def add_box(
+        self, name: str, size: Vector, position: Vector, mass: float = 0.0, colour: Colour = GREY, **options: Any
+    ) -> RigidBody:
+        """A box with sides (x, y, z) [m], centred at a position [m]; options as for add_body."""
+        return self.add_body(name, [Shape("box", tuple(size), colour=colour)], position, mass=mass, **options)
+
+    def add_sphere(
+        self, name: str, radius: float, position: Vector, mass: float = 0.0, colour: Colour = GREY, **options: Any
+    ) -> RigidBody:
+        """A sphere of a radius [m], centred at a position [m]; options as for add_body."""
+        return self.add_body(name, [Shape("sphere", (radius,), colour=colour)], position, mass=mass, **options)
+
+    def hang(
+        self,
+        name: str,
+        arm: str,
+        mass: float,
+        drop: float,
+        radius: float = 0.05,
+        inertia: float = 2e-3,
+        angular_damping: float = 0.0,
+        colour: Colour = GREY,
+    ) -> RigidBody:
+        """Hang a sphere (mass [kg], moment of inertia [kg m^2]) on a ball joint at an arm's end point.
+
+        Its centre starts ``drop`` [m] below the end point and swings freely; it touches nothing.
+        """
+        plant = self.arm(arm)
+        plant.read()
+        plant.locate()
+        body = self.add_sphere(
+            name, radius, (plant.x, plant.y, plant.z - drop), mass, colour, collides=False, inertia=[inertia] * 3,
+            angularDamping=angular_damping,
+        )  # fmt: skip
+        bullet.createConstraint(
+            plant.body, plant.end.link, body.body, -1, bullet.JOINT_POINT2POINT, (0, 0, 0), plant.end.from_com,
+            (0, 0, drop), physicsClientId=self.client,
+        )  # fmt: skip
+        return body
+
+    def add(self, *elements: Element) -> None:
+        """Add force elements (Elastic, Push, TipForce, JointLoad or your own)."""
+        self.elements.extend(elements)
+
+    def set_mass(self, arm: str, link: str, mass: float) -> None:
+        """Change the mass [kg] of one body of an arm, for instance of a tool that has taken up a payload."""
+        plant = self.arm(arm)
+        bullet.changeDynamics(plant.body, plant.links.index(link), mass=mass, physicsClientId=self.client)
+
+    def arm(self, name: str) -> SimulatedArm:
+        try:
+            return self.arms[name]
+        except KeyError:
+            raise KeyError(f"no arm '{name}' in the world; there are: {', '.join(self.arms)}") from None
+
+    def end(self, place: Place) -> Point:
+        """What a name or a fixed point (x, y, z) [m] stands for."""
+        if not isinstance(place, str):
+            x, y, z = place
+            return Point((x, y, z))
+        return self.bodies[place] if place in self.bodies else self.arm(place)
+
+    @property
+    def moving(self) -> dict[str, RigidBody]:
+        """Rigid bodies that are not static."""
+        return {name: body for name, body in self.bodies.items() if body.mass > 0}
+
+    def contacts(self, first: str, second: str | None = None) -> list[Contact]:
+        """Points where a named body touches another one (or anything), as of the last step."""
+        other = {} if second is None else {"bodyB": self._body(second)}
+        points = bullet.getContactPoints(bodyA=self._body(first), physicsClientId=self.client, **other)
+        links = self.arms[first].links if first in self.arms else []
+        return [Contact(links[p[3]] if 0 <= p[3] < len(links) else "base", p[6], p[9]) for p in points]
+
+    def contact_force(self, first: str, second: str | None = None) -> float:
+        """Sum of the normal forces between two named bodies [N], as of the last step."""
+        return sum(contact.force for contact in self.contacts(first, second))
+
+    def distance(self, first: str, second: str, limit: float = 1.0) -> float:
+        """Smallest distance between two named bodies [m], negative where they overlap, at most ``limit``."""
+        points = bullet.getClosestPoints(self._body(first), self._body(second), limit, physicsClientId=self.client)
+        return min((point[8] for point in points), default=limit)
+
+    def run(
+        self,
+        duration: float,
+        controllers: Mapping[str, Controller] | None = None,
+        control_period: float | None = None,
+        probes: Mapping[str, Callable[[], Any]] | None = None,
+        stop: Callable[[float], str | None] | None = None,
+        events: Sequence[tuple[float, Callable[[], Any]]] = (),
+        record_every: int = 1,
+        on_divergence: str = "raise",
+    ) -> Recording:
+        """Simulate for a duration [s] and return the recording; a second call goes on from where the first ended.
+
+        controllers: by arm name, ``controller(sense) -> command``, called every ``control_period`` [s] (a multiple of
+            the step, by default the step) in the order given. A command is joint torques (n,) [N m], held; a tuple
+            (torque, damping) whose damping, (n,) or (n, n) [N m s/rad], the world applies implicitly at every
+            physics step; or a callable ``inner(sense) -> torque or tuple`` evaluated at every physics step until the
+            next command. A tuple is always (torque, damping): give torques as arrays or lists.
+        probes: functions without arguments, evaluated at every recorded sample after the controllers.
+        stop: ``stop(time)`` at every control instant; a text it returns ends the run and becomes the status.
+        events: (time [s], action) pairs, each done once.
+        record_every: physics steps between recorded samples.
+        on_divergence: "raise" Diverged, or "stop" with the sentence as status and the samples up to then.
+
+        Channels: ``time`` [s]; of each arm ``position``, ``velocity``, ``torque`` (as applied, after damping and
+        saturation), ``tip`` (3,), ``force`` (3,) on the end point and, with an imperfect sensor, ``sensed_force``;
+        ``<body>.pose`` (7,), position and quaternion x, y, z, w; the channels of the elements; the probes. A sample
+        holds the state at its instant and the forces and torques computed from it; the last is one step before the end.
+        """
+        return loop.run(
+            self, duration, controllers or {}, control_period, probes or {}, stop, events, record_every, on_divergence
+        )
+
+    def render(
+        self,
+        positions: Mapping[str, ArrayLike] | None = None,
+        poses: Mapping[str, ArrayLike] | None = None,
+        camera: Camera = Camera(),
+        size: tuple[int, int] = (640, 480),
+    ) -> NDArray[np.uint8]:
+        """Picture (height, width, 3) of the scene with arms at given joint angles and bodies at given poses (7,).
+
+        The state of the simulation is left as it was. size: (width, height) in pixels.
+        """
+        state = bullet.saveState(physicsClientId=self.client)
+        for name, position in (positions or {}).items():
+            self.arm(name).reset(np.asarray(position, dtype=float))
+        for name, pose in (poses or {}).items():
+            values = np.asarray(pose, dtype=float).tolist()
+            bullet.resetBasePositionAndOrientation(
+                self._body(name), values[:3], values[3:] or (0, 0, 0, 1), physicsClientId=self.client
+            )
+        image = photograph(self.client, camera, size)
+        bullet.restoreState(stateId=state, physicsClientId=self.client)
+        bullet.removeState(state, physicsClientId=self.client)
+        return image
+
+    def _body(self, name: str) -> int:
+        return self.bodies[name].body if name in self.bodies else self.arm(name).body
+
+    def _check_new(self, name: str) -> None:
+        if name in self.arms or name in self.bodies:
+            raise ValueError(f"there is already something named '{name}' in the world")
+
+    def _untouchable(self, body: int) -> None:
+        for link in range(-1, bullet.getNumJoints(body, physicsClientId=self.client)):
+            bullet.setCollisionFilterGroupMask(body, link, 0, 0, physicsClientId=self.client)
+
+    def _shape_arrays(self, shapes: Sequence[Shape], visual: bool) -> int:
+        sizes = [_engine_size(shape, visual) for shape in shapes]
+        common = {
+            "shapeTypes": [SHAPES[shape.kind] for shape in shapes],
+            "radii": [size[0] for size in sizes],
+            "halfExtents": [size[1] for size in sizes],
+            "lengths": [size[2] for size in sizes],
+            "physicsClientId": self.client,
+        }
+        places = [list(shape.pose.xyz) for shape in shapes]
+        turns = [list(shape.pose.quaternion) for shape in shapes]
+        if not visual:
+            return int(
+                bullet.createCollisionShapeArray(
+                    collisionFramePositions=places, collisionFrameOrientations=turns, **common
+                )
+            )
+        return int(
+            bullet.createVisualShapeArray(
+                visualFramePositions=places,
+                visualFrameOrientations=turns,
+                rgbaColors=[list(shape.colour) for shape in shapes],
+                **common,
+            )
+        )
+
+
+def _engine_size(shape: Shape, visual: bool) -> tuple[float, list[float], float]:
+    """Radius, half extents and length as PyBullet's shape arrays take them."""
+    if shape.kind == "box":
+        return 0.0, [side / 2 for side in shape.size], 0.0
+    radius, *length = shape.size
+    return radius, [0.0, 0.0, 0.0], length[0] if length else 0.0

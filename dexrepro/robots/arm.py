@@ -1,0 +1,316 @@
+"""What an arm is: joints, links, shapes, an optional tool, and the URDF text a physics engine loads.
+
+An :class:`Arm` is plain data, valid without any physics engine. Lengths in m, masses in kg, angles in rad.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import pairwise
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
+
+Vector = tuple[float, float, float]
+Colour = tuple[float, float, float, float]
+Inertia = tuple[float, float, float, float, float, float]
+GREY: Colour = (0.62, 0.62, 0.65, 1.0)
+
+
+class InvalidInertia(ValueError):
+    """A link's inertia is not that of a rigid body; physics engines drop such inertias silently."""
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Position [m] and roll, pitch, yaw [rad] (URDF convention, Rz(yaw) Ry(pitch) Rx(roll)) in the parent frame."""
+
+    xyz: Vector = (0.0, 0.0, 0.0)
+    rpy: Vector = (0.0, 0.0, 0.0)
+
+    @cached_property
+    def matrix(self) -> NDArray[np.float64]:
+        """Homogeneous transform, shape (4, 4), that takes child coordinates to the parent frame."""
+        result = np.eye(4)
+        result[:3, :3] = Rotation.from_euler("xyz", self.rpy).as_matrix()
+        result[:3, 3] = self.xyz
+        return result
+
+    @property
+    def quaternion(self) -> tuple[float, float, float, float]:
+        """Orientation as (x, y, z, w)."""
+        return tuple(Rotation.from_euler("xyz", self.rpy).as_quat().tolist())
+
+    @classmethod
+    def of(cls, matrix: ArrayLike) -> Pose:
+        """Pose of a homogeneous transform of shape (4, 4)."""
+        m = np.asarray(matrix, dtype=float)
+        return cls(tuple(m[:3, 3].tolist()), tuple(Rotation.from_matrix(m[:3, :3]).as_euler("xyz").tolist()))
+
+    def __matmul__(self, other: Pose) -> Pose:
+        return Pose.of(self.matrix @ other.matrix)
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Geometry in a link frame, seen by contacts and cameras.
+
+    kind: "box" with size (x, y, z) [m]; "sphere" with (radius,); "capsule" and "cylinder" with (radius, length) along
+    the local z axis, the capsule's length without its caps.
+    """
+
+    kind: str
+    size: tuple[float, ...]
+    pose: Pose = Pose()
+    colour: Colour = GREY
+    collides: bool = True
+
+    @classmethod
+    def between(cls, start: Sequence[float], end: Sequence[float], radius: float, colour: Colour = GREY) -> Shape:
+        """Capsule of a radius [m] whose axis runs between two points [m] of the link frame."""
+        a, b = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+        x, y, z = (b - a).tolist()
+        pitch, yaw = math.atan2(math.hypot(x, y), z), math.atan2(y, x)
+        middle = tuple(((a + b) / 2).tolist())
+        return cls("capsule", (radius, math.hypot(x, y, z)), Pose(middle, (0.0, pitch, yaw)), colour)
+
+    def urdf(self) -> str:
+        names = {"box": "size", "sphere": "radius"}
+        if self.kind in names:
+            attributes = f"{names[self.kind]}={quoteattr(_numbers(self.size))}"
+        else:
+            attributes = f"radius='{self.size[0]!r}' length='{self.size[1]!r}'"
+        body = f"{_origin(self.pose)}<geometry><{self.kind} {attributes}/></geometry>"
+        name = f"c{hash(self.colour) & 0xFFFFFFFF:x}"
+        paint = f"<material name='{name}'><color rgba={quoteattr(_numbers(self.colour))}/></material>"
+        collision = f"<collision>{body}</collision>" if self.collides else ""
+        return f"<visual>{body}{paint}</visual>{collision}"
+
+
+@dataclass(frozen=True)
+class Link:
+    """A rigid body: mass [kg], centre of mass [m] in the link frame, inertia about it and the shapes it shows.
+
+    inertia: (ixx, ixy, ixz, iyy, iyz, izz) [kg m^2] about the centre of mass, along the axes of the link frame.
+    Raises InvalidInertia if the principal moments are negative or break the triangle inequality.
+    """
+
+    name: str
+    mass: float
+    com: Vector
+    inertia: Inertia
+    shapes: tuple[Shape, ...] = ()
+
+    def __post_init__(self) -> None:
+        a, b, c = np.linalg.eigvalsh(self.inertia_matrix)
+        if self.mass <= 0 or a < 0 or c > (a + b) * (1 + 1e-9):
+            raise InvalidInertia(
+                f"link '{self.name}': mass {self.mass:g} kg with principal moments ({a:.4g}, {b:.4g}, {c:.4g}) kg m^2 "
+                "is no rigid body; each moment must be at most the sum of the other two"
+            )
+
+    @property
+    def inertia_matrix(self) -> NDArray[np.float64]:
+        xx, xy, xz, yy, yz, zz = self.inertia
+        return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+    def scaled(self, factor: float) -> Link:
+        """The same body with mass and inertia multiplied by a factor."""
+        scaled = _scaled(self.inertia, factor)
+        return replace(self, mass=factor * self.mass, inertia=scaled)
+
+    def urdf(self) -> str:
+        names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+        inertia = " ".join(f"{name}='{value!r}'" for name, value in zip(names, self.inertia, strict=True))
+        inertial = f"{_origin(Pose(self.com))}<mass value='{self.mass!r}'/><inertia {inertia}/>"
+        shapes = "".join(shape.urdf() for shape in self.shapes)
+        return f"<link name={quoteattr(self.name)}><inertial>{inertial}</inertial>{shapes}</link>"
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A revolute joint: pose of the child link in the parent at angle 0, axis in the child frame, limits.
+
+    lower, upper [rad] (infinite: none), effort [N m], velocity [rad/s].
+    """
+
+    name: str
+    origin: Pose
+    axis: Vector = (0.0, 0.0, 1.0)
+    lower: float = -math.inf
+    upper: float = math.inf
+    effort: float = math.inf
+    velocity: float = math.inf
+
+
+@dataclass(frozen=True)
+class Tool:
+    """What an arm carries at its end frame.
+
+    mount: pose of the tool frame in the arm's end frame; tip: pose of the tool's end point in the tool frame.
+    mass [kg], com [m] and inertia (about com) in the tool frame; a tool of mass 0 moves the end point and shows its
+    shapes, no more. replaces: names of arm links whose shapes the tool takes the place of (their inertia stays).
+    """
+
+    name: str = "tool"
+    mount: Pose = Pose()
+    tip: Pose = Pose()
+    mass: float = 0.0
+    com: Vector = (0.0, 0.0, 0.0)
+    inertia: Inertia = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    shapes: tuple[Shape, ...] = ()
+    replaces: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A serial arm on a fixed base.
+
+    joints[i] moves links[i]. ``fixed`` are bodies rigidly behind the last moving link, each with its pose in the body
+    before. ``end`` is the end frame in the last of all bodies; a tool is mounted there. ``base`` is the pose of the
+    arm's base in the world; positions and Jacobians of an arm are always in the world frame.
+    """
+
+    name: str
+    joints: tuple[Joint, ...]
+    links: tuple[Link, ...]
+    fixed: tuple[tuple[Pose, Link], ...] = ()
+    end: Pose = Pose()
+    tool: Tool | None = None
+    base: Pose = Pose()
+    base_shapes: tuple[Shape, ...] = ()
+
+    @property
+    def dof(self) -> int:
+        """Number n of joints."""
+        return len(self.joints)
+
+    @cached_property
+    def effort(self) -> NDArray[np.float64]:
+        """Largest joint torques [N m], shape (n,)."""
+        return np.array([joint.effort for joint in self.joints])
+
+    @cached_property
+    def lower(self) -> NDArray[np.float64]:
+        """Lower joint limits [rad], shape (n,)."""
+        return np.array([joint.lower for joint in self.joints])
+
+    @cached_property
+    def upper(self) -> NDArray[np.float64]:
+        """Upper joint limits [rad], shape (n,)."""
+        return np.array([joint.upper for joint in self.joints])
+
+    @cached_property
+    def speed(self) -> NDArray[np.float64]:
+        """Largest joint speeds [rad/s], shape (n,)."""
+        return np.array([joint.velocity for joint in self.joints])
+
+    @cached_property
+    def origins(self) -> tuple[NDArray[np.float64], ...]:
+        """Transforms parent -> child at angle 0, (4, 4) each; the first one starts in the world frame."""
+        first, *rest = (joint.origin.matrix for joint in self.joints)
+        return (self.base.matrix @ first, *rest)
+
+    @cached_property
+    def tip(self) -> NDArray[np.float64]:
+        """Transform of the end point (of the tool, if there is one) in the last moving link, (4, 4)."""
+        transform = np.eye(4)
+        for pose, _ in self.fixed:
+            transform = transform @ pose.matrix
+        transform = transform @ self.end.matrix
+        if self.tool:
+            transform = transform @ self.tool.mount.matrix @ self.tool.tip.matrix
+        return transform
+
+    @property
+    def is_planar(self) -> bool:
+        """True if every joint turns about the world's z axis and the end point stays in one plane z = const."""
+        return all(
+            np.allclose(origin[:3, :3] @ axis, (0, 0, 1)) and np.allclose(origin[2, :3], (0, 0, 1))
+            for origin, axis in zip(self.origins, (joint.axis for joint in self.joints), strict=True)
+        )
+
+    def with_tool(self, tool: Tool | None) -> Arm:
+        return replace(self, tool=tool)
+
+    def placed(self, base: Pose) -> Arm:
+        """The same arm with its base elsewhere."""
+        return replace(self, base=base)
+
+    def scaled(self, factor: float) -> Arm:
+        """The same arm with the masses and inertias of all bodies, tool included, multiplied by a factor."""
+        tool = self.tool
+        if tool:
+            scaled = _scaled(tool.inertia, factor)
+            tool = replace(tool, mass=factor * tool.mass, inertia=scaled)
+        fixed = tuple((pose, link.scaled(factor)) for pose, link in self.fixed)
+        return replace(self, links=tuple(link.scaled(factor) for link in self.links), fixed=fixed, tool=tool)
+
+    @cached_property
+    def bodies(self) -> tuple[tuple[Pose, Link], ...]:
+        """The bodies behind the last moving link, tool included, each with its pose in the body before it."""
+        if not (self.tool and self.tool.mass > 0):
+            return self.fixed
+        tool = self.tool
+        link = Link(tool.name, tool.mass, tool.com, tool.inertia, tool.shapes)
+        return (*self.fixed, (self.end @ tool.mount, link))
+
+    def urdf(self) -> str:
+        """The arm as URDF text: root link "world", then one link for every body, all with explicit inertials."""
+        hidden = self.tool.replaces if self.tool else ()
+        chain = [
+            (_revolute(joint, Pose.of(origin)), link)
+            for joint, origin, link in zip(self.joints, self.origins, self.links, strict=True)
+        ]
+        chain += [(_fixed(link.name, pose), link) for pose, link in self.bodies]
+        links = [replace(link, shapes=() if link.name in hidden else link.shapes) for _, link in chain]
+        if self.tool and self.tool.mass == 0:
+            mount = self.end @ self.tool.mount
+            shapes = tuple(replace(shape, pose=mount @ shape.pose) for shape in self.tool.shapes)
+            links[-1] = replace(links[-1], shapes=(*links[-1].shapes, *shapes))
+        base = tuple(replace(shape, pose=self.base @ shape.pose) for shape in self.base_shapes)
+        links.insert(0, Link("world", 1.0, (0, 0, 0), (1, 0, 0, 1, 0, 1), base))
+        joints = [joint(parent.name, child.name) for (joint, _), (parent, child) in zip(chain, pairwise(links))]
+        return f"<robot name={quoteattr(self.name)}>{''.join(link.urdf() for link in links)}{''.join(joints)}</robot>"
+
+
+def _scaled(inertia: Inertia, factor: float) -> Inertia:
+    xx, xy, xz, yy, yz, zz = inertia
+    return factor * xx, factor * xy, factor * xz, factor * yy, factor * yz, factor * zz
+
+
+@dataclass(frozen=True)
+class _JointText:
+    kind: str
+    name: str
+    body: str = field(repr=False)
+
+    def __call__(self, parent: str, child: str) -> str:
+        ends = f"<parent link={quoteattr(parent)}/><child link={quoteattr(child)}/>"
+        return f"<joint name={quoteattr(self.name)} type='{self.kind}'>{ends}{self.body}</joint>"
+
+
+def _revolute(joint: Joint, origin: Pose) -> _JointText:
+    bounded = math.isfinite(joint.lower) and math.isfinite(joint.upper)
+    limits = f"lower='{joint.lower!r}' upper='{joint.upper!r}' " if bounded else ""
+    effort, velocity = (value if math.isfinite(value) else 1e9 for value in (joint.effort, joint.velocity))
+    limit = f"<limit {limits}effort='{effort!r}' velocity='{velocity!r}'/>"
+    body = f"{_origin(origin)}<axis xyz='{_numbers(joint.axis)}'/>{limit}"
+    return _JointText("revolute" if bounded else "continuous", joint.name, body)
+
+
+def _fixed(name: str, origin: Pose) -> _JointText:
+    return _JointText("fixed", f"{name}_mount", _origin(origin))
+
+
+def _numbers(values: Sequence[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+def _origin(pose: Pose) -> str:
+    return f"<origin xyz='{_numbers(pose.xyz)}' rpy='{_numbers(pose.rpy)}'/>"
