@@ -74,9 +74,7 @@ def simulate(config: Config, rng: Any) -> Recording:
             followers[name] = follower
         (x0, height), (x1, _) = followers["leader"].last, followers["follower"].last
         world.add(
-            Elastic(
-                "object", ("follower", "leader"), lambda t: float(stiffness(config, t)), x1 - x0, unilateral=True
-            )
+            Elastic("object", ("follower", "leader"), lambda t: float(stiffness(config, t)), x1 - x0, unilateral=True)
         )
 
         def lead(sense: Any) -> Any:
@@ -215,9 +213,7 @@ def _draw_errors(recordings: dict[str, Recording]) -> Any:
             recording = recordings[f"{case}_{law}"]
             for row in (0, 1):
                 late = recording.time >= (LATE if row else 0)
-                axes[row, column].plot(
-                    recording.time[late], recording["error"][late], **style.LINES[role], label=law
-                )
+                axes[row, column].plot(recording.time[late], recording["error"][late], **style.LINES[role], label=law)
         recording = recordings[f"{case}_proposed"]
         time = recording.time
         axes[2, column].plot(time, 1e3 * recording["contact"], **style.LINES["reference"], label="$x_d$")
@@ -244,9 +240,7 @@ def _draw_errors(recordings: dict[str, Recording]) -> Any:
     return figure
 
 
-def tabulate(
-    recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
     laws = dict.fromkeys(case.partition("_")[2] for case in metrics if case[:2] in CASES)
     rows = []
     for law in laws:

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dexrepro.physics.soft_object import Cushion
+
 Array = NDArray[np.float64]
 
 
@@ -36,28 +38,6 @@ def press(
         command = law(x + origin, f) if target is None else law(x + origin, f, target[k] + origin)
         x = np.minimum(np.maximum(x + share * (command - origin - x), -guard), guard)
     return {"force": force, "position": position}
-
-
-class Cushion:
-    """One side of a soft object: an elastic, a fast and a slow viscoelastic branch, compression only.
-
-    stiffness: k0 [N/m]; fast, slow: shares of the two Maxwell branches [-] with their times [s].
-    ``force(compression, scale)`` is the force [N] with the elastic branch multiplied by ``scale``; twice k0 a side,
-    so that both sides in series have k0.
-    """
-
-    def __init__(
-        self, stiffness: Any, dt: float, fast: float, slow: float, fast_time: float, slow_time: float
-    ) -> None:
-        self.side, self.fast, self.slow = 2.0 * stiffness, fast, slow
-        self.fast_share, self.slow_share = -np.expm1(-dt / fast_time), -np.expm1(-dt / slow_time)
-        self.fast_state = self.slow_state = 0.0
-
-    def force(self, compression: Any, scale: Any = 1.0) -> Any:
-        self.fast_state = self.fast_state + self.fast_share * (compression - self.fast_state)
-        self.slow_state = self.slow_state + self.slow_share * (compression - self.slow_state)
-        branches = self.fast * (compression - self.fast_state) + self.slow * (compression - self.slow_state)
-        return np.maximum(self.side * (scale * compression + branches), 0.0) * (compression > 0.0)
 
 
 def carry(
