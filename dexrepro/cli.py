@@ -18,9 +18,10 @@ from rich.table import Table
 from dexrepro import __version__
 
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--help", "-h", "--info", "-i", "--hydra-help", "--resolve")
+SHOWN = 6  # names in one line of the check
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
 
-out = Console(highlight=False, soft_wrap=True)
+out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 160)
 err = Console(stderr=True, highlight=False, soft_wrap=True)
 
 
@@ -322,8 +323,9 @@ def _print_check(report: dict[str, Any]) -> None:
         tolerance = entry["atol"] + entry["rtol"] * abs(entry["baseline"] or 0)
         out.print(f"  {entry['name']} = {entry['value']}, stored {entry['baseline']} +- {tolerance:.3g}", markup=False)
     for kind in ("missing", "new"):
-        for name in report[kind]:
-            out.print(f"  {kind}: {name}", markup=False)
+        if names := report[kind]:
+            more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+            out.print(f"  {kind}: {', '.join(names[:SHOWN])}{more}", markup=False)
     for claim in changed.values():
         out.print(f"  {claim['id']}: {claim['verdict']}, stored: {claim['expected']}", markup=False)
 

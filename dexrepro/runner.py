@@ -175,7 +175,8 @@ def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[
         return selected
     made = [e for e in selected if any(matches(str(figure), i) for i in (*e.figures, *e.tables))]
     if not made:
-        ids = [identifier for e in selected for identifier in (*e.figures, *e.tables)]
+        kind = "tables" if str(figure).startswith("T") else "figures"
+        ids = [identifier for e in selected for identifier in getattr(e, kind)]
         raise InputError(f"unknown figure '{figure}' in chapter {chapter}: {nearest(str(figure), ids)}")
     return made
 
@@ -236,6 +237,9 @@ def live(config: Mapping[str, Any]) -> Config:
 
 def execute(job: Job) -> dict[str, Any]:
     """Simulate, measure and store one case; returns its entry for run.json."""
+    from dexrepro.physics.world import World
+
+    World.live = job.gui
     experiment = chapters.load(job.chapter).experiment(job.experiment)
     start = time.perf_counter()
     try:
@@ -499,13 +503,13 @@ def _begin_worker(queue: Any) -> None:
     """Leave Ctrl-C to the parent, die with it, use one BLAS thread, and report simulated time."""
     from threadpoolctl import threadpool_limits
 
-    from dexrepro.physics import world
+    from dexrepro.physics.loop import Progress as Simulation
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)
     threadpool_limits(1)
-    world.on_progress = lambda simulated, duration: queue.put((os.getpid(), simulated, duration))
+    Simulation.report = staticmethod(lambda simulated, duration: queue.put((os.getpid(), simulated, duration)))
 
 
 def summary_rows(outcome: Outcome) -> list[dict[str, Any]]:

@@ -11,7 +11,7 @@ class ForceControl:
     gain: [m/N]. desired_force: [N]. Against a spring k_o it leaves the error (f(0) - f_d) / (1 + gain k_o).
     """
 
-    def __init__(self, *, gain: Any, desired_force: float) -> None:
+    def __init__(self, *, gain: Any, desired_force: Any) -> None:
         self.gain, self.desired_force = gain, desired_force
 
     def reset(self, position: Any) -> None:
@@ -27,7 +27,7 @@ class IntegralForceControl:
     rate: [m/(s N)]. desired_force: [N]. dt: control period [s].
     """
 
-    def __init__(self, *, rate: Any, desired_force: float, dt: float) -> None:
+    def __init__(self, *, rate: Any, desired_force: Any, dt: float) -> None:
         self.rate, self.desired_force, self.dt = rate, desired_force, dt
 
     def reset(self, position: Any) -> None:

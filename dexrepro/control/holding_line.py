@@ -15,7 +15,7 @@ class HoldingLineRegulation:
     sign: -1 as printed; +1 is kept to show what the opposite reading does.
     """
 
-    def __init__(self, *, gain: float, sign: float = -1.0) -> None:
+    def __init__(self, *, gain: Any, sign: float = -1.0) -> None:
         self.gain, self.sign = gain, sign
         self.reset()
 

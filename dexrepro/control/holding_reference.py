@@ -25,7 +25,7 @@ class NonImpedanceReference:
         self,
         *,
         estimation: MovementEstimation,
-        desired_force: float,
+        desired_force: Any,
         smoothing_rate: float,
         smoothing_power: float,
         dt: float,

@@ -12,7 +12,7 @@ class PassiveImpedance:
     Behind a partner of constant velocity v it keeps the force error b_pi v.
     """
 
-    def __init__(self, *, mass: Any, damping: Any, desired_force: float, dt: float) -> None:
+    def __init__(self, *, mass: Any, damping: Any, desired_force: Any, dt: float) -> None:
         self.mass, self.damping, self.desired_force, self.dt = mass, damping, desired_force, dt
 
     def reset(self, position: Any) -> None:

@@ -36,8 +36,10 @@ class World:
 
     step: physics step [s]; gravity: (3,) [m/s^2]; perturbation: added to every initial joint angle [rad];
     gui: open a window and run in real time; iterations: of the contact solver.
-    The world frame has z up; positions in m, forces in N.
+    The world frame has z up; positions in m, forces in N. Setting ``World.live`` makes every world open a window.
     """
+
+    live = False
 
     def __init__(
         self,
@@ -47,9 +49,9 @@ class World:
         gui: bool = False,
         iterations: int = 50,
     ) -> None:
-        self.step, self.time, self.gui = step, 0.0, gui
+        self.step, self.time, self.gui = step, 0.0, gui or World.live
         self.perturbation = perturbation
-        self.client = connect(gui)
+        self.client = connect(self.gui)
         bullet.setGravity(*gravity, physicsClientId=self.client)
         bullet.setPhysicsEngineParameter(
             fixedTimeStep=step, numSubSteps=0, numSolverIterations=iterations, deterministicOverlappingPairs=1,

@@ -18,11 +18,12 @@ class PlanarChain:
     lengths: [m]. masses: [kg]. base: position of the first joint (x, y) [m].
     """
 
-    def __init__(
-        self, lengths: Triple, masses: Triple, base: tuple[float, float] = (0.0, 0.0), functions: ModuleType = math
-    ) -> None:
+    def __init__(self, lengths: Triple, masses: Triple, base: Point = (0.0, 0.0), functions: ModuleType = math) -> None:
         self.lengths, self.base = tuple(lengths), base
         self._sin, self._cos = functions.sin, functions.cos
+        self._moments = [
+            length * (mass / 2 + sum(masses[i + 1 :])) for i, (length, mass) in enumerate(zip(lengths, masses))
+        ]
         # Kinetic energy is 1/2 sum c_ij cos(t_i - t_j) dt_i dt_j in the absolute link angles t.
         beyond = [sum(masses[i + 1 :]) for i in range(3)]
         self._inertia = [
@@ -73,6 +74,13 @@ class PlanarChain:
         """Joint torques J^T F [N m] of a force (x, y) [N] at the tip."""
         (x1, x2, x3), (y1, y2, y3) = self.jacobian(q)
         return x1 * force[0] + y1 * force[1], x2 * force[0] + y2 * force[1], x3 * force[0] + y3 * force[1]
+
+    def gravity(self, q: Triple, acceleration: Any = 9.81) -> tuple[Any, Any, Any]:
+        """Joint torques [N m] that hold the arm against gravity [m/s^2] along -y, where the plane is vertical."""
+        t2 = q[0] + q[1]
+        third = acceleration * self._moments[2] * self._cos(t2 + q[2])
+        second = acceleration * self._moments[1] * self._cos(t2) + third
+        return acceleration * self._moments[0] * self._cos(q[0]) + second, second, third
 
     def acceleration(self, q: Triple, dq: Triple, torque: Triple) -> tuple[Any, Any, Any]:
         """Joint accelerations [rad/s^2] under joint torques [N m] (those of tip forces included), without gravity."""

@@ -74,3 +74,17 @@ def test_a_batch_equals_single_arms():
     together = np.array(batch.acceleration(q, dq, torque))
     for i in range(4):
         assert single.acceleration(q[:, i], dq[:, i], torque[:, i]) == pytest.approx(together[:, i])
+
+
+@settings(deadline=None, max_examples=10)
+@given(angles)
+def test_gravity_torque_is_the_slope_of_the_potential_energy(q):
+    def potential(q):
+        heights, total = np.array([0.25, 0.15, 0.05]), 0.0
+        for i, mass in enumerate((1.5, 0.9, 0.2)):
+            t = np.cumsum(q)
+            total += mass * 9.81 * (np.sum((0.5, 0.3, 0.1)[:i] * np.sin(t[:i])) + heights[i] * np.sin(t[i]))
+        return total
+
+    slope = [(potential(q + 1e-6 * e) - potential(q - 1e-6 * e)) / 2e-6 for e in np.eye(3)]
+    assert ARM.gravity(q) == pytest.approx(slope, abs=1e-6)

@@ -1,0 +1,41 @@
+# make figures: run the book and build its report.  make test: all tests.  Both set up everything they need.
+PYTHON ?= python3
+BIN := .venv/bin
+EXTRAS ?= dev
+
+.PHONY: figures test check lint bench wheel clean
+
+figures: .venv/ready
+	$(BIN)/dexrepro run
+	$(BIN)/dexrepro report
+
+test: lint
+	$(BIN)/python -m pytest -n auto
+
+lint: .venv/ready
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+check: .venv/ready
+	$(BIN)/dexrepro check
+
+bench: .venv/bench
+	$(BIN)/python -m pytest tests/bench -q -s -p no:xdist -o python_files='bench_*.py'
+
+wheel: .venv/ready
+	$(BIN)/python -m build
+
+.venv/ready: pyproject.toml .ci/constraints.txt
+	$(PYTHON) -c 'import sys; sys.exit("dexrepro needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --disable-pip-version-check -c .ci/constraints.txt -e '.[$(EXTRAS)]'
+	touch $@
+
+.venv/bench: .venv/ready
+	$(BIN)/pip install --quiet --disable-pip-version-check -c .ci/constraints.txt -e '.[$(EXTRAS),bench]'
+	touch $@
+
+clean:
+	rm -rf .venv dist results/chapter* results/runs results/report results/.cache

@@ -1,0 +1,33 @@
+"""How a force history is judged; None where a run is too short to tell."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dexrepro.experiment import Recording
+
+Array = NDArray[np.float64]
+
+
+def rms(values: Array) -> float | None:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(values * values))) if values.size else None
+
+
+def mean(values: Array) -> float | None:
+    """Mean."""
+    return float(values.mean()) if values.size else None
+
+
+def last_outside(time: Array, error: Array, bound: float) -> float:
+    """Time [s] after which the magnitude of an error stays within a bound: the end of the run if it never does."""
+    outside = np.flatnonzero(np.abs(error) > bound)
+    return float(time[outside[-1]]) if outside.size else 0.0
+
+
+def force_error(recording: Recording, desired: float, start: float, end: float = math.inf) -> Array:
+    """||F|| - f_d [N] of the object between two instants [s]."""
+    return recording["object.force"][recording.between(start, end)] - desired

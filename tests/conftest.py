@@ -1,0 +1,48 @@
+"""A tiny chapter of its own, so that the runner is tested without simulating the book."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import dexrepro
+from dexrepro import chapters, config, runner
+
+ROOT = Path(dexrepro.__file__).parent.parent
+TOY = Path(__file__).parent / "toy"
+
+
+@pytest.fixture
+def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """Make chapter 90 the only chapter, work in an empty folder, and return that folder."""
+    monkeypatch.setattr(config, "config_dir", lambda: TOY / "conf")
+    monkeypatch.setattr(chapters, "__path__", [str(TOY)])
+    monkeypatch.chdir(tmp_path)
+    for function in (chapters.numbers, chapters.load, runner.source_digest):
+        function.cache_clear()
+    yield tmp_path
+    for function in (chapters.numbers, chapters.load, runner.source_digest):
+        function.cache_clear()
+    for name in [name for name in sys.modules if name.startswith("dexrepro.chapters.chapter90")]:
+        del sys.modules[name]
+
+
+Shell = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def shell(tmp_path: Path) -> Shell:
+    """Run a command line as a user would, in an empty folder."""
+
+    def run(command: str, cwd: Path = tmp_path, timeout: float = 120) -> subprocess.CompletedProcess[str]:
+        env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
+        return subprocess.run(
+            command, shell=True, cwd=cwd, env=env, capture_output=True, text=True, timeout=timeout, check=False
+        )
+
+    return run

@@ -1,0 +1,98 @@
+"""Each parameter says where it comes from, and every chapter's configuration composes."""
+
+from __future__ import annotations
+
+import pytest
+
+from dexrepro import chapters
+from dexrepro.config import (
+    Provenance,
+    compose_chapter,
+    config_dir,
+    experiment_cases,
+    leaves_with_comments,
+    parse_provenance,
+)
+
+CHAPTERS = chapters.numbers()
+
+
+def test_the_provenance_grammar() -> None:
+    assert parse_provenance("N/m | printed 2.4.1.1") == Provenance("N/m", "printed", "2.4.1.1")
+    assert parse_provenance("m | chosen: fits | 0.5..6e-1") == Provenance("m", "chosen", "fits", 0.5, 0.6)
+    assert parse_provenance("- | derived: a/b | -1..+2").low == -1
+    assert parse_provenance("just a remark") is None
+    assert parse_provenance("m | guessed") is None
+
+
+def test_leaves_are_found_with_their_dotted_key() -> None:
+    text = "a:\n  b: 1  # m | printed 1\n  c:\n    d: [1,\n      2]  # x\n  e: '#no' # y\nf: {g: 1}  # z\n"
+    assert list(leaves_with_comments(text)) == [
+        ("a.b", "1", "m | printed 1"),
+        ("a.c.d", "[1,", ""),
+        ("a.e", "'#no'", "y"),
+        ("f", "{g: 1}", "z"),
+    ]
+
+
+@pytest.mark.parametrize("chapter", CHAPTERS)
+def test_every_leaf_states_where_it_comes_from(chapter: str) -> None:
+    text = (config_dir() / "chapter" / f"{chapter}.yaml").read_text()
+    silent = [
+        key
+        for key, value, comment in leaves_with_comments(text)
+        if not key.rpartition(".")[2].startswith("_") and not value.startswith("${") and not parse_provenance(comment)
+    ]
+    assert not silent
+
+
+@pytest.mark.parametrize("chapter", CHAPTERS)
+def test_a_range_contains_the_value_it_is_given_for(chapter: str) -> None:
+    text = (config_dir() / "chapter" / f"{chapter}.yaml").read_text()
+    for key, value, comment in leaves_with_comments(text):
+        source = parse_provenance(comment)
+        if source and source.low is not None and source.high is not None:
+            assert source.low < source.high, key
+            try:
+                number = float(value)
+            except ValueError:
+                continue
+            assert source.low <= number <= source.high, key
+
+
+@pytest.mark.parametrize("chapter", CHAPTERS)
+def test_every_case_of_a_chapter_composes(chapter: str) -> None:
+    composed = compose_chapter(chapter)
+    for experiment in chapters.load(chapter).experiments:
+        assert experiment_cases(composed, experiment.name)
+
+
+@pytest.mark.parametrize("chapter", CHAPTERS)
+def test_the_parts_of_a_chapter_fit_together(chapter: str) -> None:
+    loaded = chapters.load(chapter)
+    composed = compose_chapter(chapter)
+    names = {experiment.name for experiment in loaded.experiments}
+    blocks = set(composed) - {
+        "shared",
+        "only",
+        "figure",
+        "seed",
+        "results",
+        "workers",
+        "force",
+        "quiet",
+        "gui",
+        "hydra",
+    }
+    assert blocks == names
+    assert len({claim.id for claim in loaded.claims}) == len(loaded.claims)
+    figures = [figure for experiment in loaded.experiments for figure in experiment.figures]
+    assert len(set(figures)) == len(figures)
+    for claim in loaded.claims:
+        assert {name.partition(".")[0] for name in claim.metrics} <= {claim.experiment}, claim.id
+        assert claim.experiment in names | {""}, claim.id
+
+
+def test_experiment_names_are_unique_in_the_book() -> None:
+    names = [experiment.name for chapter in CHAPTERS for experiment in chapters.load(chapter).experiments]
+    assert len(set(names)) == len(names)

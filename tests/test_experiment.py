@@ -1,0 +1,70 @@
+"""Claims: margins have the sign of the statement, and verdicts follow from margins."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from dexrepro.experiment import Claim, Config, Erratum, every, greater, less, ordered, within
+
+numbers = st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6)
+
+
+@given(numbers, numbers)
+def test_margin_is_positive_exactly_when_the_statement_holds(a: float, b: float) -> None:
+    values = {"a": a, "b": b}
+    assert (less("a", "b").margin(values) > 0) == (a < b)
+    assert (greater("a", "b").margin(values) > 0) == (a > b)
+    assert (less("a", 2.0, factor=3).margin(values) > 0) == (a < 6)
+    assert (within("a", -10, 10).margin(values) >= 0) == (-10 <= a <= 10)
+
+
+@given(numbers, numbers, numbers)
+def test_a_conjunction_has_its_weakest_margin(a: float, b: float, c: float) -> None:
+    values = {"a": a, "b": b, "c": c}
+    parts = less("a", "b"), less("b", "c")
+    assert every(*parts).margin(values) == min(part.margin(values) for part in parts)
+    assert ordered("a", "b", "c").margin(values) == every(*parts).margin(values)
+
+
+def test_margins_are_relative_gaps() -> None:
+    assert less("a", "b").margin({"a": 1.0, "b": 4.0}) == pytest.approx(0.75)
+    assert less("a", "b").margin({"a": 0.0, "b": 0.0}) == 0
+    assert within("a", 0, 10).margin({"a": 2.0}) == pytest.approx(0.2)
+    with pytest.raises(ValueError, match="not below"):
+        within("a", 1, 1)
+
+
+def verdict(claim: Claim, **metrics: float) -> str:
+    return claim.evaluate(metrics)["verdict"]
+
+
+def test_verdicts() -> None:
+    plain = Claim("C1.01", "1.1", "a is small", less("a", 1.0))
+    corrected = Claim("C1.02", "1.1", "a is small", less("a", 1.0), printed=less("p", 1.0))
+    assert verdict(plain, a=0.5) == "reproduced"
+    assert verdict(plain, a=1.0) == "not reproduced"
+    assert verdict(plain) == "not evaluated"
+    assert verdict(corrected, a=0.5, p=2) == "after correction"
+    assert verdict(corrected, a=0.5, p=0.5) == "reproduced"
+    assert verdict(corrected, a=2, p=0.5) == "not reproduced"
+    assert verdict(corrected, a=0.5) == "not evaluated"
+    assert verdict(Claim("C1.03", "1.1", "people like it", None, not_testable="no people")) == "not testable"
+
+
+def test_a_claim_needs_a_predicate_or_a_reason() -> None:
+    with pytest.raises(ValueError, match=r"C1\.04"):
+        Claim("C1.04", "1.1", "nothing", None)
+
+
+def test_an_erratum_needs_one_of_the_four_kinds() -> None:
+    with pytest.raises(ValueError, match="mistake"):
+        Erratum("E1.01", "(1.1)", "mistake", "text")
+
+
+def test_a_configuration_key_is_an_attribute_and_a_wrong_one_is_named() -> None:
+    config = Config.of({"a": {"b": [1, {"c": 2}]}})
+    assert config.a.b[1].c == 2
+    with pytest.raises(AttributeError, match="no configuration key 'x'; there are: a"):
+        _ = config.x

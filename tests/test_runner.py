@@ -1,0 +1,146 @@
+"""The runner keeps its promises: whole results, nothing repeated, nothing lost, the same numbers from any pool."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import dexrepro
+from dexrepro.config import InputError
+from dexrepro.runner import generator, plan_chapter, run_plans
+from dexrepro.storage import Result
+
+
+def run(*overrides: str, workers: int = 1, force: bool = False):
+    plans, _ = plan_chapter("90", overrides)
+    return run_plans(plans, workers=workers, force=force)
+
+
+def test_a_run_writes_metrics_claims_series_tables_figures_and_provenance(toy: Path) -> None:
+    run()
+    folder = toy / "results/chapter90/decay"
+    result = Result(folder)
+    assert result.metrics["decay.plain.final"] == pytest.approx(0.5 * np.exp(-2 * 1.99))
+    assert result.metrics["decay.ratio"] == pytest.approx(np.exp(2 * 1.99))
+    assert result.metrics["decay.plain.none"] is None
+    assert {claim["id"]: claim["verdict"] for claim in result.claims} == {
+        "C90.01": "reproduced",
+        "C90.02": "not reproduced",
+        "C90.03": "reproduced",
+    }
+    assert result.recording("halved")["pair"].shape == (200, 2)
+    assert (folder / "figures/fig_90_10.png").exists()
+    assert (folder / "figures/fig_90_10.svg").exists()
+    assert list(result.tables["T90.1"].case) == ["plain", "fast", "halved", "gain1", "gain2"]
+    assert {"seed", "version", "revision", "packages", "wall", "steps", "real_time_factor"} <= set(result.run)
+
+
+def test_what_is_there_is_not_run_again_unless_forced(toy: Path) -> None:
+    run()
+    stamp = (toy / "results/chapter90/decay/run.json").stat().st_mtime_ns
+    run()
+    assert (toy / "results/chapter90/decay/run.json").stat().st_mtime_ns == stamp
+    run(force=True)
+    assert (toy / "results/chapter90/decay/run.json").stat().st_mtime_ns > stamp
+
+
+def test_an_override_leaves_the_results_of_the_book_alone(toy: Path) -> None:
+    run()
+    before = (toy / "results/chapter90/decay/metrics.json").read_bytes()
+    outcome = run("decay.start=2.0")
+    assert (toy / "results/chapter90/decay/metrics.json").read_bytes() == before
+    assert outcome.folders["decay"].parent == Path("results/runs")
+    assert outcome.differs["decay"] == ["start=2.0 (book: 1.0)"]
+
+
+def test_a_shared_value_reaches_the_experiments_that_refer_to_it(toy: Path) -> None:
+    outcome = run("shared.rate=1.0")
+    assert outcome.differs["decay"] == ["rate=1.0 (book: 2.0)"]
+    assert Result(outcome.folders["decay"]).metrics["decay.plain.final"] == pytest.approx(0.5 * np.exp(-1.99))
+
+
+def test_a_list_makes_one_case_for_each_element_and_absent_ones_are_not_evaluated(toy: Path) -> None:
+    result = Result(run("decay.gains=[1,7]").folders["decay"])
+    assert {"gain1", "gain7"} <= set(result.run["cases"])
+    assert next(claim for claim in result.claims if claim["id"] == "C90.03")["verdict"] == "not evaluated"
+
+
+def test_one_and_two_workers_write_the_same_bytes(toy: Path) -> None:
+    noisy = "decay.noise=0.1"
+    first = run(noisy, f"results='{toy}/one'", workers=1).folders["decay"]
+    second = run(noisy, f"results='{toy}/two'", workers=2).folders["decay"]
+    for path in [*sorted((first / "series").iterdir()), first / "metrics.json"]:
+        assert path.read_bytes() == (second / path.relative_to(first)).read_bytes(), path.name
+
+
+def test_compared_cases_share_the_noise_of_a_purpose() -> None:
+    draws = [generator(0, "decay", "noise").standard_normal(5) for _ in range(2)]
+    assert np.array_equal(*draws)
+    assert not np.array_equal(draws[0], generator(0, "decay", "operator").standard_normal(5))
+    assert not np.array_equal(draws[0], generator(1, "decay", "noise").standard_normal(5))
+
+
+def test_a_failing_case_stops_no_other_and_loses_nothing(toy: Path) -> None:
+    run()
+    before = (toy / "results/chapter90/decay/metrics.json").read_bytes()
+    outcome = run("+decay.cases.fast.fail=true")
+    assert outcome.failures == {"decay.fast": "ValueError: told to fail"}
+    assert (toy / "results/chapter90/decay/metrics.json").read_bytes() == before
+    cached = {path.parent.name.split("-")[0] for path in (toy / "results/.cache/decay").glob("*/case.json")}
+    assert {"plain", "halved", "gain1", "gain2"} <= cached
+
+
+def test_a_killed_worker_is_named_and_the_next_run_completes_what_is_missing(toy: Path) -> None:
+    outcome = run("decay.fail=kill", "+decay.cases.plain.fail=false", "+decay.cases.fast.fail=false", workers=1)
+    assert "killed" in outcome.failures["decay.halved"]
+    assert not list((toy / "results").glob("runs/*"))
+    assert not list((toy / "results/.cache/decay").glob(".halved*"))
+    assert len(run().folders) == 1
+
+
+def test_skipped_experiments_say_what_they_need(toy: Path) -> None:
+    _, skipped = plan_chapter("90")
+    assert "no_such_package" in skipped["needs_more"]
+
+
+@pytest.mark.parametrize(
+    ("override", "parts"),
+    [
+        ("decay.rat=1", ["decay.rat", "did you mean 'decay.rate'"]),
+        ("only=deccay", ["deccay", "did you mean 'decay'"]),
+        ("figure=90.11", ["90.11", "90.10"]),
+        ("decay.mass=-1", ["decay.mass", "-1", "greater than 0"]),
+        ("decay.step=0", ["decay.step", "0", "greater than 0"]),
+        ("decay.duration=0.001", ["decay.duration", "0.001", "at least one step of 0.01 s"]),
+        ("decay.noise=-0.1", ["decay.noise", "-0.1", "0 or greater"]),
+        ("decay.rate=fast", ["decay.rate", "fast", "must be a number"]),
+        ("decay.rate=nan", ["decay.rate", "finite"]),
+        ("decay.rate", ["key=value"]),
+        ("seed=x", ["seed", "x", "whole number"]),
+        ("results=/proc/nowhere", ["results", "/proc/nowhere", "cannot write"]),
+    ],
+)
+def test_bad_input_gets_one_sentence_that_names_key_value_and_range(toy: Path, override: str, parts: list[str]) -> None:
+    with pytest.raises(InputError) as caught:
+        plan_chapter("90", [override])
+    assert "\n" not in str(caught.value)
+    for part in parts:
+        assert part in str(caught.value)
+
+
+def test_the_python_door_gives_metrics_claims_and_frames(toy: Path) -> None:
+    results = dexrepro.run(90, ["decay.start=3.0"], only="decay", workers=1)
+    assert results["decay"].metrics["decay.plain.largest"] == pytest.approx(1.5)
+    assert dexrepro.load(results["decay"].folder).recording("plain").time[-1] == pytest.approx(1.99)
+    with pytest.raises(FileNotFoundError, match="no result"):
+        dexrepro.load(toy)
+
+
+def test_the_configuration_on_disk_is_resolved(toy: Path) -> None:
+    run()
+    text = (toy / "results/chapter90/decay/config.yaml").read_text()
+    assert "${" not in text
+    assert json.loads((toy / "results/chapter90/decay/run.json").read_text())["differs"] == []

@@ -1,0 +1,4 @@
+"""Needs a package nobody has."""
+
+REQUIRES = ("no_such_package",)
+FIGURES = {}
