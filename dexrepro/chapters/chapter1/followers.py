@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -10,10 +11,19 @@ from numpy.typing import NDArray
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import rotation_error
 from dexrepro.robots.planar_chain import PlanarChain
 
 Array = NDArray[np.float64]
+
+
+def rotation_error(desired: Array, actual: Array) -> list[float]:
+    """Rotation vector [rad], world frame, that turns ``actual`` (3, 3) into ``desired``; below half a turn."""
+    (_, a, b), (c, _, d), (e, f, _) = difference = (desired @ actual.T).tolist()
+    x, y, z = 0.5 * (f - d), 0.5 * (b - e), 0.5 * (c - a)
+    sine = math.sqrt(x * x + y * y + z * z)
+    cosine = 0.5 * (difference[0][0] + difference[1][1] + difference[2][2] - 1.0)
+    share = math.atan2(sine, cosine) / sine if sine > 1e-9 else 1.0
+    return [share * x, share * y, share * z]
 
 
 class ComputedTorque:
@@ -70,7 +80,7 @@ class Follower:
         velocity = np.zeros(6)
         if self.last is not None:
             velocity[:3] = (position - self.last[0]) / self.dt
-            velocity[3:] = rotation_error(rotation, self.last[1]) / self.dt
+            velocity[3:] = np.array(rotation_error(rotation, self.last[1])) / self.dt
         self.last = np.array(position), np.array(rotation)
         inverse = jacobian.T @ np.linalg.inv(jacobian @ jacobian.T + self.singular)
         pull = self.posture * (self.home - self.reference)
@@ -89,13 +99,16 @@ def solve_pose(arm: Arm, start: Array, position: Array, rotation: Array, home: A
     """Joint angles (n,) [rad] that bring the end point to a pose. Raises ValueError where none is found."""
     model = RigidBodyModel(arm)
     q = np.array(start, float)
-    for k in range(600):
+    for k in range(400):
         here, attitude = model.forward(q)
         error = np.concatenate([position - here, rotation_error(rotation, attitude)])
         jacobian = model.jacobian(q)
         inverse = jacobian.T @ np.linalg.inv(jacobian @ jacobian.T + 1e-4 * np.eye(6))
-        pull = 0.05 * ((start if home is None else home) - q) * (k < 400)
-        q = np.clip(q + 0.3 * inverse @ error + pull - inverse @ (jacobian @ pull), arm.lower, arm.upper)
+        pull = 0.05 * ((start if home is None else home) - q) * (k < 150)
+        step = 0.3 * inverse @ error + pull - inverse @ (jacobian @ pull)
+        q = np.clip(q + step, arm.lower, arm.upper)
+        if k >= 150 and np.abs(step).max() < 1e-12:
+            break
     model.close()
     if np.linalg.norm(error) > 2e-3:
         raise ValueError(f"arm '{arm.name}' cannot reach {np.round(position, 3)} m: off by {np.linalg.norm(error):.3g}")

@@ -7,6 +7,7 @@ its stiffness and its filling shift. AFR knows the commands to its partner and i
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -18,17 +19,47 @@ from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 from dexrepro.physics.elements import TipForce
+from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.kinematics import forward
 
-FIGURES: dict[str, Figure] = {}
-TABLES: dict[str, str] = {}
+FIGURES = {
+    "1.1": Figure(
+        "Simulated Baxter: the right arm (DFR) is teleoperated, the left arm (AFR) assists; the object is soft. The "
+        "book shows a photograph of a system of three robots.",
+        "Two arms of a Baxter robot hold a ball above a table.",
+    ),
+    "1.18": Figure(
+        "Contact force on AFR along three synthetic trajectories, simulated Baxter arms under torque; the book shows "
+        "measurements. Errors after the 8th second (right of the line) are in T1.B. Bottom: the first 1.5 s.",
+        "The proposed law keeps the contact force closest to 15 N on all three trajectories.",
+    ),
+    "1.19": Figure(
+        "Instants of the task in the first trajectory, proposed law: start, object on the left, tilted by pi/4, "
+        "swinging along the holding line, level over the right target, pressed on it. Below: DFR's motion and the tilt. "
+        "The book shows photographs.",
+        "Six instants of two arms that lift, tilt, swing and put down a ball.",
+    ),
+    "1.A": Figure(
+        "Our own tests of Fig. 1.18, first trajectory: force samples that are late by one control period, an object "
+        "twice as stiff, and gains that fit (T1.B). Bars: RMS force error after the 8th second.",
+        "One late sample or a stiffer object undoes the advantage of the printed gain.",
+    ),
+}
+TABLES = {"T1.B": "Force error after the 8th second along three trajectories, beside the book's nine numbers"}
 RATE = 50.0
 SIDES = {"leader": "right", "follower": "left"}
 LEVEL = np.stack([(0.0, 0.0, -1.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], axis=1)  # R_D while the line is level
+VIEW = Camera(target=(0.45, 0.0, 0.25), distance=1.75, yaw=75.0, pitch=-18.0)
+LAWS = {"proposed": "book", "passive": "rival", "fixed": "plain"}
+PRINTED = {  # RMS force error [N], Section 1.5.2.2: proposed, impedance, fixed distance
+    "t1": (0.87, 1.22, 2.48),
+    "t2": (0.82, 1.21, 2.61),
+    "t3": (0.77, 1.31, 1.93),
+}
 FLIP = np.diag([1.0, -1.0, -1.0])
 
 
@@ -57,6 +88,7 @@ def scene(config: Config, rng: Any = None) -> World:
 
 def simulate(config: Config, rng: Any) -> Recording:
     law, dt = config.law, config.control_period
+    images: dict[str, Any] = {}
     with scene(config, rng) as world:
         followers = {
             name: Follower(plant.arm, np.array(plant.q), dt=dt, mass_error=config.arm.mass_error,
@@ -97,11 +129,27 @@ def simulate(config: Config, rng: Any) -> Recording:
             control_period=dt,
             probes={name: (lambda name=name: last[name]) for name in last},
             stop=lambda _: "object dropped" if world.bodies["object"].z < middle(config)[2] - 0.3 else None,
+            events=_photographs(world, path, images) if config.photograph else (),
             record_every=round(dt / config.step),
             on_divergence="stop",
         )
         _condense(recording, path, world, config)
+    recording.images = images
     return recording
+
+
+def _photographs(world: World, path: HoldPath, images: dict[str, Any]) -> list[tuple[float, Any]]:
+    """Events that photograph the instants of Fig. 1.19."""
+    at = path.phases
+    instants = {
+        "a": 0.0, "b": at["tilt"] - 0.5, "c": at["swing"] - 0.2, "d": 0.5 * (at["swing"] + at["level"]),
+        "e": at["press"] - 0.2, "f": at["press"] + 2.5,
+    }  # fmt: skip
+
+    def shoot(name: str) -> None:
+        images[name] = world.render(camera=VIEW, size=(480, 400))
+
+    return [(round(when, 2), lambda name=name: shoot(name)) for name, when in instants.items()]
 
 
 def _fill(world: World, config: Config, rng: Any) -> None:
@@ -112,7 +160,7 @@ def _fill(world: World, config: Config, rng: Any) -> None:
     phase = rng("stiffness phase").uniform(0, 2 * np.pi)
 
     def scale(time: float) -> float:
-        return 1.0 + o.modulation * float(np.sin(2 * np.pi * time / o.modulation_period + phase))
+        return 1.0 + o.modulation * math.sin(2 * math.pi * time / o.modulation_period + phase)
 
     world.add(
         SoftObject("grip", "object", ("leader", "follower"), (left, right), length=o.length, friction=o.friction,
@@ -170,3 +218,129 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "slip": float(recording["slip"][-1]),
         "finished": int(recording.status == "finished"),
     }
+
+
+def summarise(metrics: dict[str, Metrics], config: Config) -> Metrics:
+    ratios = {}
+    for other in ("passive", "fixed"):
+        for trial in PRINTED:
+            own, rival = (metrics.get(f"{trial}_{law}", {}).get("rmse") for law in ("proposed", other))
+            if own and rival:
+                ratios[f"{other}_ratio_{trial}"] = rival / own
+    return ratios
+
+
+def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+    figures = {}
+    if all(f"{trial}_{law}" in recordings for trial in PRINTED for law in LAWS):
+        figures["1.18"] = _draw_forces(recordings, metrics, config)
+    shown = recordings.get("t1_proposed")
+    if shown and shown.images:
+        figures["1.1"] = _draw_scene(shown)
+        figures["1.19"] = _draw_task(shown)
+    if "t1_proposed_late" in metrics:
+        figures["1.A"] = _draw_limits(metrics)
+    return figures
+
+
+def _draw_forces(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, axes = style.subplots(2, 3, height=3.6, sharey="row")
+    for column, trial in enumerate(PRINTED):
+        for law, role in reversed(LAWS.items()):
+            recording = recordings[f"{trial}_{law}"]
+            axes[0, column].plot(recording.time, recording["force"], label=law, **style.LINES[role])
+            early = recording.time <= 1.5
+            axes[1, column].plot(recording.time[early], recording["force"][early], **style.LINES[role])
+        numbers = [metrics[f"{trial}_{law}"]["rmse"] for law in LAWS]
+        axes[0, column].set_title("RMSE " + " / ".join(f"{value:.2f}" for value in numbers) + " N")
+        for row in (0, 1):
+            axes[row, column].axhline(config.desired_force, **style.LINES["reference"])
+        style.event(axes[0, column], config.settled, "8 s")
+        axes[0, column].set_ylim(0, 30)
+        axes[1, column].set(xlabel="Time [s]", ylim=(0, 30))
+    axes[0, 0].set_ylabel("Contact force [N]")
+    axes[1, 0].set_ylabel("First 1.5 s [N]")
+    axes[0, 2].legend(loc="lower right", ncols=3, columnspacing=0.8, handlelength=1.4)
+    best = all(
+        metrics[f"{t}_proposed"]["rmse"] < min(metrics[f"{t}_{law}"]["rmse"] for law in ("passive", "fixed"))
+        for t in PRINTED
+    )
+    style.title(
+        figure,
+        "The proposed law holds the force best on "
+        + ("all three trajectories" if best else "some of the trajectories only")
+        + " (proposed / passive / fixed)",
+    )
+    return figure
+
+
+def _draw_scene(recording: Recording) -> Any:
+    from dexrepro.report import style
+
+    figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.9)
+    axis.imshow(recording.images["b"])
+    axis.set_axis_off()
+    style.title(figure, "Two simulated Baxter arms hold a soft object")
+    return figure
+
+
+def _draw_task(recording: Recording) -> Any:
+    from dexrepro.report import style
+
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 6.6))
+    grid = figure.add_gridspec(4, 3, height_ratios=(1.6, 1.6, 0.8, 0.6))
+    words = ("start", "on the left", "tilted", "swinging", "over the right", "pressed")
+    for k, (name, word) in enumerate(zip("abcdef", words)):
+        axis = figure.add_subplot(grid[k // 3, k % 3])
+        axis.imshow(recording.images[name])
+        axis.set_axis_off()
+        style.panel(axis, name, word)
+    path, tilt = figure.add_subplot(grid[2, :]), figure.add_subplot(grid[3, :])
+    for k, (label, role) in enumerate((("x", "plain"), ("y", "book"), ("z", "rival"))):
+        path.plot(recording.time, recording["partner"][:, k], label=label, **style.LINES[role])
+    path.set_ylabel("DFR [m]")
+    path.legend(ncols=3, loc="lower left")
+    tilt.plot(recording.time, np.rad2deg(recording["tilt"]), **style.LINES["book"])
+    tilt.set(xlabel="Time [s]", ylabel="Tilt [deg]")
+    style.title(figure, "One arm is led, the other keeps holding: left, tilt, swing, right, press")
+    return figure
+
+
+def _draw_limits(metrics: dict[str, Metrics]) -> Any:
+    from dexrepro.report import style
+
+    groups = {"as printed": "", "one sample late": "_late", "twice as stiff": "_stiff", "own gain": "_tuned"}
+    figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
+    for k, (law, role) in enumerate(LAWS.items()):
+        values = [metrics.get(f"t1_{law}{ending}", {}).get("rmse") for ending in groups.values()]
+        places = [(i + 0.27 * (k - 1), value) for i, value in enumerate(values) if value is not None]
+        bars = axis.bar(*zip(*places), width=0.25, color=style.LINES[role]["color"], label=law)
+        axis.bar_label(bars, fmt="%.2g", fontsize=6.5)
+    axis.set_xticks(range(len(groups)), groups)
+    axis.set_yscale("log")
+    axis.set_ylabel("RMS force error [N]")
+    axis.legend(ncols=3, loc="upper left", fontsize=6.5, handlelength=1.0, columnspacing=0.8)
+    axis.set_ylim(0.1, 60)
+    worse = metrics["t1_proposed_late"]["rmse"] > metrics["t1_passive_late"]["rmse"]
+    style.title(figure, "One late sample " + ("undoes" if worse else "does not undo") + " the advantage")
+    return figure
+
+
+def tabulate(
+    recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config
+) -> dict[str, pd.DataFrame]:
+    rows = []
+    for case, values in metrics.items():
+        trial, _, law = case.partition("_")
+        if trial not in PRINTED:
+            continue
+        book = dict(zip(LAWS, PRINTED[trial])).get(law)
+        rows.append(
+            {"trajectory": trial[1:], "law": law.replace("_", " "), "RMSE [N]": values.get("rmse"), "book [N]": book}
+            | {"as measured [N]": values.get("rmse_measured"), "rise [s]": values.get("rise"),
+               "overshoot [-]": values.get("overshoot"), "settling [s]": values.get("settling"),
+               "twist [deg]": values.get("twist"), "object held": bool(values.get("finished"))}
+        )  # fmt: skip
+    return {"T1.B": pd.DataFrame(rows)}
