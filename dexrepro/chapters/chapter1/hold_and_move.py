@@ -53,13 +53,14 @@ TABLES = {"T1.B": "Force error after the 8th second along three trajectories, be
 RATE = 50.0
 SIDES = {"leader": "right", "follower": "left"}
 LEVEL = np.stack([(0.0, 0.0, -1.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], axis=1)  # R_D while the line is level
-VIEW = Camera(target=(0.45, 0.0, 0.25), distance=1.75, yaw=75.0, pitch=-18.0)
+VIEW = Camera(target=(0.5, 0.0, 0.3), distance=1.45, yaw=75.0, pitch=-18.0)
 LAWS = {"proposed": "book", "passive": "rival", "fixed": "plain"}
 PRINTED = {  # RMS force error [N], Section 1.5.2.2: proposed, impedance, fixed distance
     "t1": (0.87, 1.22, 2.48),
     "t2": (0.82, 1.21, 2.61),
     "t3": (0.77, 1.31, 1.93),
 }
+BALL, TABLE = (0.35, 0.65, 0.85, 1.0), (0.85, 0.82, 0.78, 1.0)
 FLIP = np.diag([1.0, -1.0, -1.0])
 
 
@@ -80,9 +81,9 @@ def scene(config: Config, rng: Any = None) -> World:
         noise = rng("force sensor") if rng and name == "follower" else None
         world.add_arm(name, arm, start, sensor=sensor if noise else Sensor(), rng=noise)
     radius = config.object.radius
-    world.add_sphere("object", radius, middle(config), mass=config.object.mass, friction=0.8, angularDamping=0.2)
+    world.add_sphere("object", radius, middle(config), mass=config.object.mass, colour=BALL, angularDamping=0.2)
     x, y, z = middle(config)
-    world.add_box("table", (0.5, 1.2, 0.04), (x + 0.05, y, z - radius - 0.02))
+    world.add_box("table", (0.5, 1.2, 0.04), (x + 0.05, y, z - radius - 0.02), colour=TABLE)
     return world
 
 
@@ -147,7 +148,7 @@ def _photographs(world: World, path: HoldPath, images: dict[str, Any]) -> list[t
     }  # fmt: skip
 
     def shoot(name: str) -> None:
-        images[name] = world.render(camera=VIEW, size=(480, 400))
+        images[name] = world.render(camera=VIEW, size=(480, 340))
 
     return [(round(when, 2), lambda name=name: shoot(name)) for name, when in instants.items()]
 
@@ -289,8 +290,8 @@ def _draw_scene(recording: Recording) -> Any:
 def _draw_task(recording: Recording) -> Any:
     from dexrepro.report import style
 
-    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 6.6))
-    grid = figure.add_gridspec(4, 3, height_ratios=(1.6, 1.6, 0.8, 0.6))
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 6.0))
+    grid = figure.add_gridspec(4, 3, height_ratios=(1.5, 1.5, 0.8, 0.6))
     words = ("start", "on the left", "tilted", "swinging", "over the right", "pressed")
     for k, (name, word) in enumerate(zip("abcdef", words)):
         axis = figure.add_subplot(grid[k // 3, k % 3])
@@ -328,9 +329,7 @@ def _draw_limits(metrics: dict[str, Metrics]) -> Any:
     return figure
 
 
-def tabulate(
-    recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case, values in metrics.items():
         trial, _, law = case.partition("_")
