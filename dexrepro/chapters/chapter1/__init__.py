@@ -1,11 +1,19 @@
 """Chapter 1: one leader and two followers hold and move an object."""
 
-from dexrepro.chapters.chapter1 import dartboard, force_tracking, hold_and_move, relative_pose, two_nuts
+from dexrepro.chapters.chapter1 import (
+    dartboard,
+    force_tracking,
+    hold_and_move,
+    ready_to_hold,
+    relative_pose,
+    two_nuts,
+)
 from dexrepro.experiment import Experiment
 
 TITLE = "Single-leader dual-follower holding and moving of objects"
 EXPERIMENTS = tuple(
-    Experiment.of(module) for module in (force_tracking, relative_pose, two_nuts, dartboard, hold_and_move)
+    Experiment.of(module)
+    for module in (force_tracking, relative_pose, two_nuts, dartboard, ready_to_hold, hold_and_move)
 )
 CLAIMS: tuple = ()
 REFERENCES: tuple = ()
