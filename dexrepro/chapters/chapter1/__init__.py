@@ -6,6 +6,7 @@ from dexrepro.chapters.chapter1 import (
     hold_and_move,
     ready_to_hold,
     relative_pose,
+    rigid_boxes,
     two_nuts,
 )
 from dexrepro.experiment import Experiment
@@ -13,7 +14,7 @@ from dexrepro.experiment import Experiment
 TITLE = "Single-leader dual-follower holding and moving of objects"
 EXPERIMENTS = tuple(
     Experiment.of(module)
-    for module in (force_tracking, relative_pose, two_nuts, dartboard, ready_to_hold, hold_and_move)
+    for module in (force_tracking, relative_pose, two_nuts, dartboard, ready_to_hold, rigid_boxes, hold_and_move)
 )
 CLAIMS: tuple = ()
 REFERENCES: tuple = ()
