@@ -3,6 +3,7 @@
 from dexrepro.chapters.chapter1 import (
     dartboard,
     force_tracking,
+    hand_over,
     hold_and_move,
     ready_to_hold,
     relative_pose,
@@ -14,7 +15,16 @@ from dexrepro.experiment import Experiment
 TITLE = "Single-leader dual-follower holding and moving of objects"
 EXPERIMENTS = tuple(
     Experiment.of(module)
-    for module in (force_tracking, relative_pose, two_nuts, dartboard, ready_to_hold, rigid_boxes, hold_and_move)
+    for module in (
+        force_tracking,
+        relative_pose,
+        two_nuts,
+        dartboard,
+        ready_to_hold,
+        hand_over,
+        rigid_boxes,
+        hold_and_move,
+    )
 )
 CLAIMS: tuple = ()
 REFERENCES: tuple = ()
