@@ -5,9 +5,11 @@ from dexrepro.chapters.chapter1 import (
     force_tracking,
     hand_over,
     hold_and_move,
+    lyapunov,
     ready_to_hold,
     relative_pose,
     rigid_boxes,
+    sensitivity,
     two_nuts,
 )
 from dexrepro.experiment import Experiment
@@ -17,6 +19,7 @@ EXPERIMENTS = tuple(
     Experiment.of(module)
     for module in (
         force_tracking,
+        lyapunov,
         relative_pose,
         two_nuts,
         dartboard,
@@ -24,6 +27,7 @@ EXPERIMENTS = tuple(
         hand_over,
         rigid_boxes,
         hold_and_move,
+        sensitivity,
     )
 )
 CLAIMS: tuple = ()

@@ -105,6 +105,13 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "p_value": float(test.pvalue) if test else 1.0,
         "p_value_all": float(stats.wilcoxon(gain).pvalue),
     }
+    for ring in (0.005, 0.01):
+        wider = scores(hits, ring)
+        change = (wider["proposed"] - wider["general"]).groupby("panel")
+        result |= {
+            f"wins_median_{1e3 * ring:.0f}mm": float(change.agg(lambda g: (g > 0).sum()).median()),
+            f"losses_median_{1e3 * ring:.0f}mm": float(change.agg(lambda g: (g < 0).sum()).median()),
+        }
     for mapping in MAPPINGS:
         mine = hits["mapping"] == mapping
         result |= {
@@ -196,7 +203,8 @@ def _draw_speed(axes: Any, recording: Recording) -> None:
 
 
 def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
-    keys = ("wins", "ties", "losses", "p_value", "wins_median", "losses_median", "general_radius", "proposed_radius",
+    keys = ("wins", "ties", "losses", "p_value", "wins_median", "losses_median", "wins_median_5mm",
+            "losses_median_5mm", "wins_median_10mm", "losses_median_10mm", "general_radius", "proposed_radius",
             "general_score", "proposed_score", "general_time", "proposed_time", "general_load", "proposed_load")  # fmt: skip
     rows = [{"case": case} | {key: metrics[case].get(key) for key in keys} for case in recordings]
     return {"T1.D": pd.DataFrame(rows)}

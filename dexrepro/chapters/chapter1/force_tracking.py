@@ -37,6 +37,7 @@ TABLES = {"T1.A": "Force error of every law in the three cases of Fig. 1.10"}
 RATE = 50.0
 CASES = ("c1", "c2", "c3")
 LATE = 5.0  # s, after the transient
+RECORDED = 5  # control periods between recorded samples
 ROLES = {"proposed": "book", "force": "rival", "passive": "plain"}
 
 
@@ -93,6 +94,7 @@ def simulate(config: Config, rng: Any) -> Recording:
             controllers={"leader": lead, "follower": follow},
             control_period=dt,
             probes=probes,
+            record_every=RECORDED,
             stop=lambda _: "left the workspace" if abs(followers["follower"].last[0] - x1) > config.workspace else None,
             on_divergence="stop",
         )
@@ -116,7 +118,7 @@ def simulate(config: Config, rng: Any) -> Recording:
 
 def lyapunov(recording: Recording, series: dict[str, Any], config: Config) -> Any:
     """V of Eq. (1.34), (1.35) along a run with perfect tracking (V_3 = 0) and the best constant weights W*."""
-    z, contact, dt = series["displacement"], series["contact"], config.control_period
+    z, contact, dt = series["displacement"], series["contact"], RECORDED * config.control_period
     rate = np.gradient(contact, dt)
     lags = recording["weights"].shape[1] - 1
     regressor = np.stack([np.ones_like(z), *(np.r_[np.zeros(i), z[: len(z) - i]] for i in range(lags))], axis=1)
@@ -124,7 +126,7 @@ def lyapunov(recording: Recording, series: dict[str, Any], config: Config) -> An
         best = np.zeros_like(recording["weights"])
         best[:, 0] = rate  # Eq. (1.28) holds exactly
     else:
-        best = np.linalg.lstsq(regressor, rate, rcond=1e-9)[0]
+        best = np.linalg.lstsq(regressor, rate, rcond=1e-2)[0]
     beta = config.adaptation
     weights = np.sum((recording["weights"] - best) ** 2, axis=1)
     return (weights + (recording["estimate"] - contact) ** 2) / (2 * beta) + series["error"] ** 2 / (
@@ -137,8 +139,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
     if len(time) < 2 or recording.status != "finished":
         # What is left after contact is lost counts as a force error of f_d, as it is.
         lost = config.desired_force
-        held = np.sum(error**2) + (round(config.duration / config.control_period) - len(error)) * lost**2
-        return {"rmse": float(np.sqrt(held * config.control_period / config.duration)), "finished": 0}
+        held = np.sum(error**2) + (round(config.duration / config.control_period / RECORDED) - len(error)) * lost**2
+        return {"rmse": float(np.sqrt(held * RECORDED * config.control_period / config.duration)), "finished": 0}
     late = recording.between(LATE)
     outside = np.flatnonzero(np.abs(error) > 0.05 * config.desired_force)
     result: Metrics = {
@@ -153,7 +155,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "finished": 1,
     }
     if "lyapunov" in recording:
-        v = recording["lyapunov"][:: round(0.01 / config.control_period)]
+        v = recording["lyapunov"][:: round(0.01 / config.control_period / RECORDED)]
         result |= {"v_start": float(v[0]), "v_end": float(v[-1]), "v_rising": float(np.mean(np.diff(v) > 0))}
         result["weights_end"] = float(np.abs(recording["weights"][-1]).max())
     return result

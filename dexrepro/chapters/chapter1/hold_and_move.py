@@ -239,7 +239,7 @@ def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: 
     if shown and shown.images:
         figures["1.1"] = _draw_scene(shown)
         figures["1.19"] = _draw_task(shown)
-    if "t1_proposed_late" in metrics:
+    if {"t1_proposed_late", "t1_passive_late"} <= set(metrics):
         figures["1.A"] = _draw_limits(metrics)
     return figures
 

@@ -42,7 +42,7 @@ def press(
 
 def carry(
     law: Any, scene: dict[str, Array], cushions: tuple[Cushion, Cushion], *, mass: Any, length: float, period: int,
-    dt: float = 1e-3, lag: Array | float = 0.03, noise: Array, delay: int = 0, speed: float = 0.3, batch: int = 1,
+    dt: float = 1e-3, lag: Array | float = 0.03, noise: Array, delay: Array | int = 0, speed: float = 0.3, batch: int = 1,
 ) -> Array:  # fmt: skip
     """Carry an object of ``mass`` [kg] between two followers that lag behind their commands; force on the AFR (n, batch).
 
@@ -57,13 +57,15 @@ def carry(
     leader, follower, start, command = zero, zero, zero, zero
     body, rate, force = zero, zero, np.empty((n, batch))
     velocity = zero
-    late = [zero] * (delay + 1)
+    sensed, columns = np.zeros((n // period + 2, batch)), np.arange(batch)
+    late = np.broadcast_to(delay, batch)
     law.reset(zero)
     for k in range(n):
         if k % period == 0:
-            late = [*late[1:], force[k - 1] + noise[k // period] if k else zero]
+            sample = k // period
+            sensed[sample] = force[k - 1] + noise[sample] if k else zero
             start = command
-            wanted = law(start, late[0])
+            wanted = law(start, sensed[np.maximum(sample - late, 0), columns])
             command = start + np.clip(wanted - start, -speed * dt * period, speed * dt * period)
         step = (k % period + 1) / period
         goal = start + step * (command - start)
