@@ -1,7 +1,9 @@
 """Chapter 1: one leader and two followers hold and move an object."""
 
 from dexrepro.chapters.chapter1 import (
+    claims,
     dartboard,
+    errata,
     force_tracking,
     hand_over,
     hold_and_move,
@@ -30,6 +32,5 @@ EXPERIMENTS = tuple(
         sensitivity,
     )
 )
-CLAIMS: tuple = ()
-REFERENCES: tuple = ()
-ERRATA: tuple = ()
+CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES
+ERRATA = errata.ERRATA

@@ -87,7 +87,7 @@ def scores(hits: pd.DataFrame, ring: float) -> pd.DataFrame:
 
 def measure(recording: Recording, config: Config) -> Metrics:
     hits = recording.frames["hits"]
-    radius = np.hypot(hits["y"], hits["z"])
+    radius: Any = np.hypot(hits["y"], hits["z"])
     table = scores(hits, config.ring)
     gain = table["proposed"] - table["general"]
     by_panel = gain.groupby("panel")
@@ -134,13 +134,13 @@ def measure(recording: Recording, config: Config) -> Metrics:
     return result
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
     if "book" not in recordings:
         return {}
     from dexrepro.report import style
 
     recording, numbers = recordings["book"], metrics["book"]
-    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.6))
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.0))
     grid = figure.add_gridspec(3, 2, width_ratios=(1.35, 1.0))
     _draw_hits(figure.add_subplot(grid[:, 0]), recording.frames["hits"].query("panel == 0"), config)
     _draw_speed([figure.add_subplot(grid[k, 1]) for k in (0, 1)], recording)
@@ -202,9 +202,10 @@ def _draw_speed(axes: Any, recording: Recording) -> None:
     style.panel(axes[0], "b", "slow near a board, fast between")
 
 
-def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
     keys = ("wins", "ties", "losses", "p_value", "wins_median", "losses_median", "wins_median_5mm",
             "losses_median_5mm", "wins_median_10mm", "losses_median_10mm", "general_radius", "proposed_radius",
-            "general_score", "proposed_score", "general_time", "proposed_time", "general_load", "proposed_load")  # fmt: skip
+            "general_score", "proposed_score", "general_time", "proposed_time", "general_load",
+            "proposed_load")  # fmt: skip
     rows = [{"case": case} | {key: metrics[case].get(key) for key in keys} for case in recordings]
     return {"T1.D": pd.DataFrame(rows)}

@@ -26,7 +26,7 @@ FIGURES = {
         "Two three-link arms hold a spring between them and move right together.",
     ),
     "1.10": Figure(
-        "Simulated torque-controlled arms. Columns: the book's three cases. Rows: force error; the same after the first "
+        "Simulated torque-controlled arms. Columns: the book's three cases. Rows: force error; the same after "
         "5 s; the contact position x_d that gives the desired force, the reference x_r and the stiffness; the Lyapunov "
         "function of Eq. (1.34) along the run, which the book does not draw (constant weights W* exist in case 1 "
         "alone, elsewhere the best constant ones are used).",
@@ -165,14 +165,14 @@ def rms(values: Any) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def summarise(metrics: dict[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: Any, config: Config) -> Metrics:
     own = [metrics.get(f"{case}_proposed", {}).get("rmse") for case in CASES]
     if any(value is None for value in own):
         return {}
     return {"spread": float(max(own) / min(own) - 1.0)}
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
     figures = {}
     if "c1_proposed" in recordings:
         figures["1.9"] = _draw_arms(recordings["c1_proposed"], config)
@@ -242,7 +242,7 @@ def _draw_errors(recordings: dict[str, Recording]) -> Any:
     return figure
 
 
-def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
     laws = dict.fromkeys(case.partition("_")[2] for case in metrics if case[:2] in CASES)
     rows = []
     for law in laws:

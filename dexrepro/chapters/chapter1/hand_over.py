@@ -1,7 +1,8 @@
 """From the potential field to force control at first contact, with and without a latch (Section 1.4).
 
 The book says that contact force invalidates the field and initialises the force law. A light touch, a noisy sensor and
-a bare comparison make that switch chatter; a latch that asks for three samples and opens below a smaller force does not.
+a bare comparison make that switch chatter; a latch that asks for three samples and opens below a smaller force
+does not.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def scene(config: Config, rng: Any = None) -> World:
         world.add_arm(
             name, arm, start, sensor=Sensor(force_noise=config.sensor_noise) if noise else Sensor(), rng=noise
         )
-    world.add_sphere("object", config.radius, place, mass=config.mass, colour=BALL, angularDamping=0.2)
+    world.add_sphere("object", config.radius, config.place, mass=config.mass, colour=BALL, angularDamping=0.2)
     world.add_box("stand", (0.2, 0.2, 0.02), place - [0.0, 0.0, config.radius + 0.01], friction=1.0, colour=TABLE)
     return world
 
@@ -109,7 +110,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
     if not {"latched", "bare"} <= set(recordings):
         return {}
     from dexrepro.report import style
@@ -134,5 +135,5 @@ def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: 
     return {"1.C": figure}
 
 
-def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
     return {"T1.G": pd.DataFrame([{"case": case.replace("_", " "), **metrics[case]} for case in recordings])}

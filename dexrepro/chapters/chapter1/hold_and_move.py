@@ -1,13 +1,14 @@
 """A soft object held and moved by two Baxter arms along three operator trajectories, Section 1.5.2.2.
 
-The direct-teleoperated follower (DFR, right arm) obeys a synthetic operator; the assistive one (AFR, left arm) keeps its
-distance by one of the compared laws at 100 Hz. The object is a 0.3 kg body between viscoelastic contacts with friction,
-its stiffness and its filling shift. AFR knows the commands to its partner and its own noisy force sensor.
+The direct-teleoperated follower (DFR, right arm) obeys a synthetic operator; the assistive one (AFR, left arm) keeps
+its distance by one of the compared laws at 100 Hz. The object is a 0.3 kg body between viscoelastic contacts with
+friction, its stiffness and its filling shift. AFR knows the commands to its partner and its own noisy force sensor.
 """
 
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,7 @@ FIGURES = {
     ),
     "1.19": Figure(
         "Instants of the task in the first trajectory, proposed law: start, object on the left, tilted by pi/4, "
-        "swinging along the holding line, level over the right target, pressed on it. Below: DFR's motion and the tilt. "
+        "swinging along the holding line, level over the right target, pressed on it. Below: DFR's motion and tilt. "
         "The book shows photographs.",
         "Six instants of two arms that lift, tilt, swing and put down a ball.",
     ),
@@ -128,7 +129,7 @@ def simulate(config: Config, rng: Any) -> Recording:
             config.duration,
             controllers={"leader": lead, "follower": follow},
             control_period=dt,
-            probes={name: (lambda name=name: last[name]) for name in last},
+            probes={"reference": lambda: last["reference"], "measured": lambda: last["measured"]},
             stop=lambda _: "object dropped" if world.bodies["object"].z < middle(config)[2] - 0.3 else None,
             events=_photographs(world, path, images) if config.photograph else (),
             record_every=round(dt / config.step),
@@ -150,7 +151,7 @@ def _photographs(world: World, path: HoldPath, images: dict[str, Any]) -> list[t
     def shoot(name: str) -> None:
         images[name] = world.render(camera=VIEW, size=(480, 340))
 
-    return [(round(when, 2), lambda name=name: shoot(name)) for name, when in instants.items()]
+    return [(round(when, 2), partial(shoot, name)) for name, when in instants.items()]
 
 
 def _fill(world: World, config: Config, rng: Any) -> None:
@@ -221,8 +222,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: dict[str, Metrics], config: Config) -> Metrics:
-    ratios = {}
+def summarise(metrics: Any, config: Config) -> Metrics:
+    ratios: Metrics = {}
     for other in ("passive", "fixed"):
         for trial in PRINTED:
             own, rival = (metrics.get(f"{trial}_{law}", {}).get("rmse") for law in ("proposed", other))
@@ -231,7 +232,7 @@ def summarise(metrics: dict[str, Metrics], config: Config) -> Metrics:
     return ratios
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
     figures = {}
     if all(f"{trial}_{law}" in recordings for trial in PRINTED for law in LAWS):
         figures["1.18"] = _draw_forces(recordings, metrics, config)
@@ -244,7 +245,7 @@ def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: 
     return figures
 
 
-def _draw_forces(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> Any:
+def _draw_forces(recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
     figure, axes = style.subplots(2, 3, height=3.6, sharey="row")
@@ -309,7 +310,7 @@ def _draw_task(recording: Recording) -> Any:
     return figure
 
 
-def _draw_limits(metrics: dict[str, Metrics]) -> Any:
+def _draw_limits(metrics: Any) -> Any:
     from dexrepro.report import style
 
     groups = {"as printed": "", "one sample late": "_late", "twice as stiff": "_stiff", "own gain": "_tuned"}
@@ -329,7 +330,7 @@ def _draw_limits(metrics: dict[str, Metrics]) -> Any:
     return figure
 
 
-def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case, values in metrics.items():
         trial, _, law = case.partition("_")

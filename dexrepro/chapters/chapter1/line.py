@@ -1,6 +1,6 @@
 """Two followers and an object reduced to the holding line: fast, batched plants for sweeps and for tests.
 
-Coordinates of ``press`` are those of Section 1.5.1: displacements from the first contact along x, the partner at x_D(t).
+Coordinates of ``press`` are those of Section 1.5.1: displacements from the first contact along x, partner at x_D(t).
 Those of ``carry`` are the distance between the followers, as in Eq. (1.33).
 """
 
@@ -42,9 +42,9 @@ def press(
 
 def carry(
     law: Any, scene: dict[str, Array], cushions: tuple[Cushion, Cushion], *, mass: Any, length: float, period: int,
-    dt: float = 1e-3, lag: Array | float = 0.03, noise: Array, delay: Array | int = 0, speed: float = 0.3, batch: int = 1,
+    dt: float, lag: Array | float, noise: Array, delay: Array | int = 0, speed: float = 0.3, batch: int = 1,
 ) -> Array:  # fmt: skip
-    """Carry an object of ``mass`` [kg] between two followers that lag behind their commands; force on the AFR (n, batch).
+    """Carry an object of ``mass`` [kg] between two followers that lag behind their commands; force on AFR (n, batch).
 
     scene: ``partner`` command of the teleoperated follower [m], ``weight`` on the object along the line [N] and
         ``scale`` of the elastic stiffness [-], each (n,), sampled every dt [s]; length: free length of the object [m].

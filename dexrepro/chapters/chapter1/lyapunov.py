@@ -88,10 +88,11 @@ def measure(recording: Recording, config: Config) -> Metrics:
     if config.study == "growth":
         frame = recording.frames["growth"]
         # From 30-40 s, when the partner has come to rest, to 90-100 s.
-        return {
+        result: Metrics = {
             f"growth_{column.replace('.', 'p')}": float(frame[column].iloc[9] / frame[column].iloc[3])
             for column in frame.columns[1:]
-        } | {"bound": float(bound(config))}
+        }
+        return result | {"bound": bound(config)}
     v = recording["lyapunov"]
     return {
         "rising": float(np.mean(np.diff(v) > 0)),
@@ -108,7 +109,7 @@ def bound(config: Config) -> float:
     return float(np.sqrt(half * half + 1.0 - config.stiffness * config.adaptation) - half)
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
     if not {"ideal", "built", "printed", "growth"} <= set(recordings):
         return {}
     from dexrepro.report import style

@@ -8,6 +8,7 @@ here: there is no contact force that would end it.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,7 @@ FIGURES = {
         "As DFR comes closer the minimum of the potential moves from beside the object into it.",
     ),
     "1.12": Figure(
-        "The camera's object: four edge points, their noisy average, sampled at 15 Hz and off-centre, over two seconds.",
+        "The camera's object: four edge points, their noisy average at 15 Hz, off-centre, over two seconds.",
         "The measured position scatters about a point 18 mm from the true centre.",
     ),
     "1.16": Figure(
@@ -44,7 +45,7 @@ FIGURES = {
 TABLES = {"T1.E": "Potential field: adjustable weights and ablations"}
 RATE = 25.0
 SHAKEN, APPROACH, HOLD, PITCHED = 18.0, 24.0, 30.0, 38.0  # s, ends of the phases
-VIEW = Camera(target=(0.45, 0.0, 0.3), distance=1.7, yaw=75.0, pitch=-18.0)
+VIEW = Camera(target=(0.5, 0.0, 0.3), distance=1.25, yaw=75.0, pitch=-18.0)
 INSTANTS = {"a": 1.5, "b": 7.5, "c": 13.5, "d": 21.0, "e": 25.0, "f": 32.0, "g": 40.0}
 
 
@@ -80,7 +81,7 @@ def scene(config: Config) -> World:
     for name, side in SIDES.items():
         arm = baxter(side)
         world.add_arm(name, arm, solve_pose(arm, posture(side), *starts[name]))
-    world.add_sphere("object", config.radius, centre, colour=BALL)
+    world.add_sphere("object", config.radius, config.place, colour=BALL)
     return world
 
 
@@ -142,7 +143,7 @@ def simulate(config: Config, rng: Any) -> Recording:
             return followers["follower"].go(sense, target, facings[k])
 
         def shoot(name: str) -> None:
-            images[name] = world.render(camera=VIEW, size=(300, 220))
+            images[name] = world.render(camera=VIEW, size=(280, 230))
 
         recording = world.run(
             config.duration,
@@ -153,7 +154,7 @@ def simulate(config: Config, rng: Any) -> Recording:
                 "ready": lambda: field.points[1],
                 "target": lambda: field.position,
             },
-            events=[(t, lambda n=n: shoot(n)) for n, t in INSTANTS.items()] if config.photograph else (),
+            events=[(at, partial(shoot, name)) for name, at in INSTANTS.items()] if config.photograph else (),
             record_every=round(dt / config.step),
         )
         recording.series = _condense(recording, plan, seen, world)
@@ -185,7 +186,7 @@ def _condense(recording: Recording, plan: dict[str, Any], seen: Any, world: Worl
 
 def _field(config: Config) -> pd.DataFrame:
     """Potential [J] on a grid of the holding plane for three distances of DFR [m]."""
-    y, z = np.meshgrid(np.linspace(-0.1, 0.6, 71), np.linspace(-0.3, 0.3, 61))
+    y, z = np.meshgrid(np.linspace(-0.2, 0.6, 81), np.linspace(-0.3, 0.3, 61))
     points = np.stack([np.zeros_like(y), y, z], axis=-1)
     axis = np.array([0.0, 1.0, 0.0])
     frames = []
@@ -231,7 +232,7 @@ def _first(time: Any, happened: Any) -> float | None:
     return float(time[np.argmax(happened)]) if happened.any() else None
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
     if "adjustable" not in recordings:
         return {}
     recording = recordings["adjustable"]
@@ -249,7 +250,9 @@ def _draw_field(field: pd.DataFrame, config: Config) -> Any:
     for axis, word, (_, part) in zip(axes, ("far", "near", "touching"), field.groupby("distance", sort=False)):
         y, z = np.unique(part["y"]), np.unique(part["z"])
         grid = {key: part[key].to_numpy().reshape(len(z), len(y)) for key in ("potential", "fy", "fz")}
-        axis.contour(y, z, np.sqrt(grid["potential"]), levels=14, colors=style.PLAIN, linewidths=0.5)
+        axis.contour(
+            y, z, np.sqrt(grid["potential"]), levels=np.linspace(0.02, 0.5, 13), colors=style.PLAIN, linewidths=0.5
+        )
         step, size = (slice(None, None, 6), slice(None, None, 6)), np.hypot(grid["fy"], grid["fz"]) + 1e-9
         show = np.minimum(size, 0.3) / size
         axis.quiver(y[step[1]], z[step[0]], (show * grid["fy"])[step], (show * grid["fz"])[step], color=style.BOOK,
@@ -284,7 +287,7 @@ def _draw_camera(recording: Recording, config: Config) -> Any:
     axis.set(xlabel="x [mm]", ylabel="z [mm]", xlim=(-170, 170), ylim=(-170, 190))
     axis.legend(loc="lower center", ncols=3, bbox_to_anchor=(0.5, 0.93), handletextpad=0.3, columnspacing=0.8)
     offset = np.linalg.norm(seen.mean(axis=0)) if len(centre) else 0.0
-    style.title(figure, f"The camera sees the object {offset:.0f} mm off its centre")
+    style.title(figure, f"Camera: {offset:.0f} mm off centre")
     return figure
 
 
@@ -295,12 +298,12 @@ def _draw_task(recording: Recording, config: Config) -> Any:
     grid = figure.add_gridspec(6, 7, height_ratios=(0.8, 1.1, 1.1, 0.8, 0.6, 0.8))
     for k, (name, at) in enumerate(INSTANTS.items()):
         axis = figure.add_subplot(grid[0, k])
-        axis.imshow(recording.images[name][:, 40:260])
+        axis.imshow(recording.images[name])
         axis.set_axis_off()
         axis.set_title(f"({name}) {at:g} s", fontsize=7)
     axes = [figure.add_subplot(grid[row, :]) for row in range(1, 6)]
     time = recording.time
-    for k, (axis, label) in enumerate(zip(axes[:2], ("Along [m]", "Across, up [m]"))):
+    for k, (axis, label) in enumerate(zip(axes[:2], ("Along [m]", "Up [m]"))):
         for name, role in (("follower", "book"), ("leader", "extra1"), ("object", "reference")):
             axis.plot(time, recording[name][:, 1 + k], label={"follower": "AFR", "leader": "DFR"}.get(name, name),
                       **style.LINES[role])  # fmt: skip
@@ -320,6 +323,8 @@ def _draw_task(recording: Recording, config: Config) -> Any:
     axes[4].legend(ncols=2, loc="upper right")
     words = ("left, right", "back, forth", "up, down", "DFR comes", "held", "yaw", "yaw and pitch")
     edges = (0.0, 6.0, 12.0, SHAKEN, APPROACH, HOLD, PITCHED, time[-1])
+    for axis in axes[:-1]:
+        axis.set_xticklabels([])
     for axis in axes:
         axis.set_xlim(0, time[-1])
         for k in range(7):
@@ -332,7 +337,7 @@ def _draw_task(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
     columns = {"lag_rms": "lag RMS [m]", "lag_most": "largest lag [m]", "clearance": "least clearance [m]",
                "own_contact": "AFR touches [s]", "partner_contact": "DFR touches [s]", "facing": "facing [deg]",
                "pointing": "pointing [deg]"}  # fmt: skip

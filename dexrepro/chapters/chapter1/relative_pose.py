@@ -31,7 +31,7 @@ FIGURES = {
         "With speed-dependent scaling the total form pulls the tool back to 60 mm, the incremental form keeps it.",
     ),
     "1.6": Figure(
-        "Tool frames of DFR and AFR for three orientations of DFR, by Eq. (1.14); z axes thick. The book shows one pair.",
+        "Tool frames of DFR and AFR for three orientations of DFR, by Eq. (1.14); z axes thick. The book shows one.",
         "In every pair the two z axes point at each other and the x axes agree.",
     ),
 }
@@ -124,9 +124,8 @@ def _moves(config: Config) -> pd.DataFrame:
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
-    result: Metrics = {
-        name: float(value) for name, value in recording.frames["errors"].iloc[0].items() if name != "microseconds"
-    }
+    errors = recording.frames["errors"].drop(columns="microseconds")
+    result: Metrics = {str(name): float(errors[name].iloc[0]) for name in errors}
     fastest = recording.frames["moves"].query(f"duration == {min(config.move_durations)}")
     for form, rows in fastest.groupby("form"):
         result[f"{form}_end"] = float(rows["tool"].iloc[-1])
@@ -141,7 +140,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     return result
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
     if "default" not in recordings:
         return {}
     frames = recordings["default"].frames

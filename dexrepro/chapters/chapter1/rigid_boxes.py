@@ -64,7 +64,8 @@ def scene(config: Config, rng: Any = None, offset: Any = (0.0, 0.0, 0.0)) -> Wor
     centre = place + [offset[0], offset[1], 0.0]
     world.add_box(
         "box", size, centre, mass=config.mass, rpy=(0.0, 0.0, offset[2]), friction=config.friction / 0.5,
-        colour=(0.80, 0.62, 0.40, 1.0), contactStiffness=config.contact_stiffness, contactDamping=config.contact_damping,
+        colour=(0.80, 0.62, 0.40, 1.0), contactStiffness=config.contact_stiffness,
+        contactDamping=config.contact_damping,
     )  # fmt: skip
     x, y, z = place
     world.add_box("stand", (0.16, 0.10, 0.02), (x, y, z - size[2] / 2 - 0.01), friction=1.0, colour=TABLE)
@@ -111,7 +112,8 @@ def field_of(config: Config) -> PotentialField:
 def simulate(config: Config, rng: Any) -> Recording:
     draws = rng("start poses")
     offsets = draws.uniform(-1, 1, (config.starts, 3)) * config.scatter
-    recordings, rows, images = [], [], {}
+    recordings, rows = [], []
+    images: dict[str, Any] = {}
     for k, offset in enumerate(offsets):
         pictures: dict[str, Any] = {}
         recording, row = _carry(config, rng, offset, pictures if k == 0 and config.photograph else None)
@@ -218,7 +220,7 @@ def wilson(successes: int, runs: int) -> tuple[float, float]:
     return centre - half, centre + half
 
 
-def summarise(metrics: dict[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: Any, config: Config) -> Metrics:
     sizes = [metrics[size] for size in SIZES if size in metrics]
     if not sizes:
         return {}
@@ -227,7 +229,7 @@ def summarise(metrics: dict[str, Metrics], config: Config) -> Metrics:
     return {"success_share": wins / runs, "success_low": low, "success_high": high}
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
     figures = {}
     if all(size in recordings and recordings[size].images for size in SIZES):
         figures["1.17"] = _draw_boxes(recordings, metrics, config)
@@ -237,7 +239,7 @@ def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: 
     return figures
 
 
-def _draw_boxes(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> Any:
+def _draw_boxes(recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 6.4))
@@ -269,7 +271,7 @@ def _draw_boxes(recordings: dict[str, Recording], metrics: dict[str, Metrics], c
     return figure
 
 
-def _draw_gains(gains: list[str], recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> Any:
+def _draw_gains(gains: Any, recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, 5, height=2.0, sharey=True)
@@ -286,7 +288,7 @@ def _draw_gains(gains: list[str], recordings: dict[str, Recording], metrics: dic
     return figure
 
 
-def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
-    rows = [{"case": case} | {key: metrics[case].get(key) for key in
-             ("runs", "successes", "slip", "rmse", "bounces", "switches", "least_moved")} for case in recordings]  # fmt: skip
+def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+    keys = ("runs", "successes", "slip", "rmse", "bounces", "switches", "least_moved")
+    rows = [{"case": case} | {key: metrics[case].get(key) for key in keys} for case in recordings]
     return {"T1.F": pd.DataFrame(rows)}

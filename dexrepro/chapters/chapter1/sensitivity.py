@@ -198,9 +198,9 @@ def _carry_batch(
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
-    variants = recording.frames["variants"]
+    variants: Any = recording.frames["variants"]
     if config.study == "tracking":
-        table = variants.set_index("variant")
+        table: Any = variants.set_index("variant")
         result: Metrics = {f"best_{case}": float(recording.frames["best"][case].iloc[0]) for case in ("c1", "c2", "c3")}
         keys = {"proposed": "proposed", "equal": "proposed, alpha 0.05", "proportional": "proportional",
                 "force": "force", "fast_force": "force, gain 0.5", "same_force": "force, gain 0.11",
@@ -224,13 +224,13 @@ def measure(recording: Recording, config: Config) -> Metrics:
         row = rows.loc[rows["rmse"].idxmin()]
         result[f"tuned_{law}"], result[f"tuned_{law}_gain"] = float(row["rmse"]), float(row["gain"])
     # What the weights change at these gains: the proposed law against itself without them.
-    tried = {law: variants.loc[variants["law"] == f"tuning {law}", "rmse"].to_numpy() for law in ("proposed", "force")}
-    result["weights_matter"] = float(np.abs(tried["proposed"] - tried["force"])[:8].max())
+    gains = {law: variants.loc[variants["law"] == f"tuning {law}", "rmse"].to_numpy() for law in ("proposed", "force")}
+    result["weights_matter"] = float(np.abs(gains["proposed"] - gains["force"])[:8].max())
     result["tuned_gap"] = max(abs(float(result[f"tuned_{law}_gain"] or 0) / TUNED[law] - 1) for law in TUNED)
     return result
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
     if "carrying" not in recordings:
         return {}
     from dexrepro.report import style
@@ -252,7 +252,7 @@ def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: 
     return {"1.E": figure}
 
 
-def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
     if not {"tracking", "carrying"} <= set(recordings):
         return {}
     rows = _flips(metrics["tracking"], metrics["carrying"])

@@ -119,7 +119,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     return result
 
 
-def draw(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
     titles = {
         "general": ("1.13", "The general mapping keeps the hand out of its comfortable range"),
         "proposed": ("1.14", "Re-fixing keeps the hand comfortable, a small scale keeps the tool steady"),
@@ -143,8 +143,8 @@ def _draw_history(recording: Recording, text: str, config: Config) -> Any:
     axes[0].plot(time, np.rad2deg(recording["roll"]), label="hand", **style.LINES["book"])
     axes[0].plot(time, np.rad2deg(recording["tool_roll"]), label="tool", **style.LINES["rival"])
     axes[0].set(ylabel="Roll [deg]", ylim=(-100, 260))
-    axes[0].annotate("comfortable", (time[-1], -comfort), fontsize=6.5, va="bottom", ha="right", color="#555555")
-    axes[0].annotate("range of the forearm", (time[-1], limit), fontsize=6.5, va="bottom", ha="right", color="#555555")
+    axes[0].annotate("comfortable", (0.0, -comfort), fontsize=6.5, va="bottom", color="#555555")
+    axes[0].annotate("range of the forearm", (0.0, -limit), fontsize=6.5, va="bottom", color="#555555")
     axes[0].legend(loc="upper left", ncols=2)
     near = np.min(np.linalg.norm(recording["tool"][:, None] - nuts(config)[None], axis=2), axis=1)
     axes[1].semilogy(time, np.maximum(1e3 * near, 0.02), **style.LINES["book"])
@@ -153,6 +153,6 @@ def _draw_history(recording: Recording, text: str, config: Config) -> Any:
     return figure
 
 
-def tabulate(recordings: dict[str, Recording], metrics: dict[str, Metrics], config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
     rows = {case: recording.frames["operators"].median() for case, recording in recordings.items()}
     return {"T1.C": pd.DataFrame(rows).T.rename_axis("mapping").reset_index()}
