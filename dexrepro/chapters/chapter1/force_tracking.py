@@ -184,20 +184,21 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
 def _draw_arms(recording: Recording, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(1, 4, height=1.9, sharey=True)
+    figure, axes = style.subplots(1, 4, height=2.3, sharex=True, sharey=True)
     chains = [PlanarChain(config.arm.lengths, config.arm.masses, tuple(base)) for base in config.bases.values()]
     for axis, instant in zip(axes, np.linspace(0, recording.time[-1], 4)):
         joints = recording["joints"][np.argmin(np.abs(recording.time - instant))]
         ends = []
         for chain, q, colour in zip(chains, (joints[:3], joints[3:]), (style.EXTRA[0], style.BOOK)):
-            c1, c2, c3, s1, s2, s3 = chain._projections(q)
-            x = chain.base[0] + np.cumsum([0, c1, c2, c3])
-            y = chain.base[1] + np.cumsum([0, s1, s2, s3])
+            turns = np.cumsum(q)
+            x = chain.base[0] + np.cumsum(np.r_[0.0, chain.lengths * np.cos(turns)])
+            y = chain.base[1] + np.cumsum(np.r_[0.0, chain.lengths * np.sin(turns)])
             axis.plot(x, y, "-o", color=colour, markersize=3)
             ends.append((x[-1], y[-1]))
         axis.plot(*zip(*ends), color=style.RIVAL, linestyle=(0, (1, 0.6)), linewidth=3)
         axis.set_title(f"{instant:.0f} s, {1e3 * abs(ends[1][0] - ends[0][0]):.0f} mm apart")
         axis.set_aspect("equal")
+        axis.set(xlim=(-0.35, 0.95), ylim=(-0.05, 0.9), xticks=(0.0, 0.5))
         axis.set_xlabel("x [m]")
     axes[0].set_ylabel("y [m]")
     axes[0].annotate("DFR", (0.0, 0.05), fontsize=7, color=style.EXTRA[0], ha="right")
@@ -209,7 +210,7 @@ def _draw_arms(recording: Recording, config: Config) -> Any:
 def _draw_errors(recordings: dict[str, Recording]) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(4, 3, height=6.2, sharex=True)
+    figure, axes = style.subplots(4, 3, height=6.4, sharex=True, sharey="row")
     for column, case in enumerate(CASES):
         for law, role in ROLES.items():
             recording = recordings[f"{case}_{law}"]
@@ -231,8 +232,6 @@ def _draw_errors(recordings: dict[str, Recording]) -> Any:
         axes[3, column].semilogy(time, recording["lyapunov"], **style.LINES["book"])
         axes[3, column].set_xlabel("Time [s]")
         axes[1, column].axhline(0, color="black", linewidth=0.4)
-        for row in (1, 2, 3):
-            axes[row, column].sharey(axes[row, 0])
         axes[0, column].set_title(("Ramp, constant $k_o$", "Ramp, varying $k_o$", "Sine, varying $k_o$")[column])
     for row, text in enumerate(("Force error [N]", "after 5 s [N]", "Position [mm]", "Lyapunov $V$ [-]")):
         axes[row, 0].set_ylabel(text)
