@@ -75,6 +75,17 @@ def _parser() -> argparse.ArgumentParser:
     report = commands.add_parser("report", parents=[selection], help="build the HTML page from files")
     report.set_defaults(function=report_command)
 
+    study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
+    study.set_defaults(function=study_command)
+
+    render = commands.add_parser("render", parents=[selection], help="animate recorded runs (case=NAME format=gif|mp4)")
+    render.set_defaults(function=render_command)
+
+    new = commands.add_parser("new", help="write a working control law of your own, with its test")
+    new.add_argument("what", choices=["controller"])
+    new.add_argument("name", help="class name, for example MyLaw")
+    new.set_defaults(function=new_command)
+
     diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
     diff.add_argument("a", type=Path)
     diff.add_argument("b", type=Path)
@@ -89,6 +100,7 @@ def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
     arguments = [quoted(argument) for argument in arguments]
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
+        _check_sweep([argument for argument in arguments if not argument.startswith("-") and "=" in argument])
         return _hydra_run(arguments)
     extra_dir, overrides = _config_dir_option(arguments)
     return run_overrides(overrides, extra_dir)
@@ -145,8 +157,9 @@ def run_overrides(overrides: Sequence[str], extra_dir: str | None = None, worker
     outcome.skipped = skipped
     if not quiet:
         _print_summary(outcome)
-    for name, sentence in outcome.failures.items():
-        err.print(f"{name} failed: {sentence}", markup=False)
+    for sentence, names in outcome.reasons().items():
+        others = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        err.print(f"{names[0]}{others} failed: {sentence}", markup=False)
     return FAILED if outcome.failures else OK
 
 
@@ -204,6 +217,14 @@ def _implied_chapters(overrides: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(owner[name] for name in named if name in owner))
 
 
+def _check_sweep(overrides: Sequence[str]) -> None:
+    """Refuse what no job of a sweep could use, before Hydra starts any."""
+    from dexrepro.config import check_overrides, compose_chapter
+
+    numbers, rest = chapters_of(overrides)
+    check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
+
+
 def _hydra_run(arguments: list[str]) -> int:
     import hydra
 
@@ -254,15 +275,15 @@ def _print_summary(outcome: Any) -> None:
 # --------------------------------------------------------------------------------------------------- other commands
 
 
-def _selected(options: argparse.Namespace) -> tuple[list[str], Path, list[str]]:
+def _selected(options: argparse.Namespace, extra: Sequence[str] = ()) -> tuple[list[str], Path, list[str]]:
     """Chapters, results folder and experiments from ``chapter=N results=DIR only=NAME``."""
     from dexrepro.config import InputError
 
     overrides = [quoted(text) for text in options.selection]
     for text in overrides:
-        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers"):
+        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers", *extra):
             raise InputError(f"'{text}' has no meaning here; use chapter=N, only=EXPERIMENT, figure=ID or results=DIR")
-    numbers, rest = chapters_of(overrides)
+    numbers, rest = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
     values = dict(text.partition("=")[::2] for text in rest)
     only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]
     options.workers = positive_workers(int(values["workers"]) if values.get("workers", "").isdigit() else None)
@@ -346,6 +367,60 @@ def report_command(options: argparse.Namespace) -> int:
 
     _, results, _ = _selected(options)
     out.print(str(page.build(results)), markup=False)
+    return OK
+
+
+def new_command(options: argparse.Namespace) -> int:
+    """``dexrepro new controller NAME``."""
+    from dexrepro.scaffold import new_controller
+
+    law, test, command = new_controller(options.name, Path())
+    out.print(f"wrote {law} and {test}; try:\n  pytest {test}\n  {command}", markup=False)
+    return OK
+
+
+def render_command(options: argparse.Namespace) -> int:
+    """``dexrepro render (FOLDER | chapter=N [only=EXPERIMENT]) [case=NAME] [format=gif|mp4]``."""
+    from dexrepro import chapters
+    from dexrepro.config import InputError
+    from dexrepro.report import animation
+
+    folders = [Path(text) for text in options.selection if "=" not in text]
+    options.selection = [text for text in options.selection if "=" in text]
+    numbers, results, only = _selected(options, ("case", "format"))
+    values = dict(text.partition("=")[::2] for text in options.selection)
+    kind = values.get("format", "gif")
+    if kind not in ("gif", "mp4"):
+        raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
+    for number in () if folders else numbers:
+        for experiment in chapters.load(number).experiments:
+            folder = results / f"chapter{number}" / experiment.name
+            if experiment.name in only or (not only and experiment.has("scene") and folder.exists()):
+                folders.append(folder)
+    for folder in folders:
+        out.print(str(animation.render(folder, values.get("case"), kind)), markup=False)
+    return OK
+
+
+def study_command(options: argparse.Namespace) -> int:
+    """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=200] [hours=H]``."""
+    from dexrepro import study
+    from dexrepro.config import InputError
+
+    numbers, results, only = _selected(options, ("claim", "samples", "hours"))
+    values = dict(text.partition("=")[::2] for text in options.selection)
+    try:
+        samples, hours = int(values.get("samples", 200)), float(values.get("hours", 0)) or None
+    except ValueError as error:
+        raise InputError("samples must be a whole number and hours a number") from error
+    for number in numbers:
+        for name in study.experiments_of(number, only, values.get("claim")):
+            path = study.run(number, name, samples, results, workers=options.workers, hours=hours)
+            out.print(f"{name}: {path}", markup=False)
+            for claim, row in study.read_json(path)["claims"].items():
+                interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
+                most = f", follows {row['parameter']} most" if row["parameter"] else ""
+                out.print(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}){most}", markup=False)
     return OK
 
 

@@ -284,20 +284,15 @@ def _leaves(node: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
         yield from _leaves(value, f"{prefix}.{key}" if prefix else str(key))
 
 
-def differences(config: Mapping[str, Any], shipped: Mapping[str, Any]) -> list[str]:
+def differences(config: Mapping[str, Any], shipped: Mapping[str, Any], prefix: str = "") -> list[str]:
     """Keys in which two configurations differ, as ``key=value (book: value)``."""
-    mine, theirs = dict(_entries(config)), dict(_entries(shipped))
-    absent = "absent"
-    return [
-        f"{key}={mine.get(key, absent)} (book: {theirs.get(key, absent)})"
-        for key in dict.fromkeys([*mine, *theirs])
-        if mine.get(key, absent) != theirs.get(key, absent)
-    ]
-
-
-def _entries(node: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    for key, value in node.items():
-        if isinstance(value, Mapping) and value:
-            yield from _entries(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value
+    found: list[str] = []
+    for key in dict.fromkeys([*config, *shipped]):
+        mine, theirs = config.get(key), shipped.get(key)
+        if isinstance(mine, Mapping) and isinstance(theirs, Mapping):
+            found += differences(mine, theirs, f"{prefix}{key}.")
+        elif key not in config:
+            found.append(f"{prefix}{key} left out")
+        elif mine != theirs:
+            found.append(f"{prefix}{key}={mine} (book: {theirs if key in shipped else 'absent'})")
+    return found

@@ -103,6 +103,13 @@ class Outcome:
     skipped: dict[str, str] = field(default_factory=dict)
     differs: dict[str, list[str]] = field(default_factory=dict)
 
+    def reasons(self) -> dict[str, list[str]]:
+        """What failed, by the sentence that says why."""
+        found: dict[str, list[str]] = {}
+        for name, sentence in self.failures.items():
+            found.setdefault(sentence, []).append(name)
+        return found
+
 
 # -------------------------------------------------------------------------------------------------------- planning
 
@@ -211,7 +218,9 @@ def source_digest(chapter: str, with_report: bool = False) -> str:
         parts = path.relative_to(root).parts
         if parts[0] == "chapters" and len(parts) > 2 and parts[1] != f"chapter{chapter}":
             continue
-        if parts[0] in ("cli.py", "baselines.py", "progress.py") or (parts[0] == "report" and not with_report):
+        if parts[0] in ("cli.py", "baselines.py", "progress.py", "study.py", "scaffold.py") or (
+            parts[0] == "report" and not with_report
+        ):
             continue
         digest.update(str(parts).encode() + path.read_bytes())
     return digest.hexdigest()
@@ -476,7 +485,7 @@ def _pool(workers: int, progress: Progress, in_process: bool) -> Iterator[Any]:
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
     queue = context.SimpleQueue()
     progress.listen(queue)
-    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker, initargs=(queue,))
+    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=begin_worker, initargs=(queue,))
     try:
         yield pool.submit
     except BaseException:
@@ -499,7 +508,7 @@ def _run_here(function: Any, argument: Any) -> Future[Any]:
 _queue: Any = None
 
 
-def _begin_worker(queue: Any) -> None:
+def begin_worker(queue: Any) -> None:
     """Leave Ctrl-C to the parent, die with it, use one BLAS thread, and report simulated time."""
     from threadpoolctl import threadpool_limits
 
@@ -509,7 +518,8 @@ def _begin_worker(queue: Any) -> None:
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)
     threadpool_limits(1)
-    Simulation.report = staticmethod(lambda simulated, duration: queue.put((os.getpid(), simulated, duration)))
+    if queue is not None:
+        Simulation.report = staticmethod(lambda simulated, duration: queue.put((os.getpid(), simulated, duration)))
 
 
 def summary_rows(outcome: Outcome) -> list[dict[str, Any]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time as wall
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,8 +17,7 @@ from dexrepro.physics.plant import Controller, SimulatedArm
 if TYPE_CHECKING:
     from dexrepro.physics.world import World
 
-VELOCITY_GUARD = 1e3
-POSITION_GUARD = 1e3
+GUARD = 1e3  # sum of an arm's joint angles and rates [rad, rad/s] beyond which a run has diverged
 
 
 class Progress:
@@ -36,7 +36,6 @@ class Recorder:
     def __init__(self, rows: int) -> None:
         self._rows, self._count = rows, 0
         self._buffer: NDArray[np.float64] | None = None
-        self.channels: list[tuple[str, int, bool]] = []
 
     def write(self, row: list[float]) -> None:
         if self._buffer is None:
@@ -44,37 +43,37 @@ class Recorder:
         self._buffer[self._count] = row
         self._count += 1
 
-    def series(self) -> dict[str, NDArray[Any]]:
-        """Channels of shape (samples,) or (samples, width)."""
-        width = sum(size for _, size, _ in self.channels)
-        buffer = np.empty((0, width)) if self._buffer is None else self._buffer[: self._count]
+    def series(self, channels: Sequence[tuple[str, int]]) -> dict[str, NDArray[Any]]:
+        """Channels in the order of the rows; a width of 0 stands for a single number: (samples,), else (samples, k)."""
+        rows = np.empty((0, sum(max(width, 1) for _, width in channels)))
+        if self._buffer is not None:
+            rows = self._buffer[: self._count]
         result, start = {}, 0
-        for name, size, scalar in self.channels:
-            result[name] = buffer[:, start].copy() if scalar else buffer[:, start : start + size].copy()
-            start += size
+        for name, width in channels:
+            result[name] = rows[:, start : start + width].copy() if width else rows[:, start].copy()
+            start += max(width, 1)
         return result
 
 
+@dataclass
 class Probes:
     """Functions without arguments whose values, numbers or arrays of one shape, become channels."""
 
-    def __init__(self, probes: Mapping[str, Callable[[], Any]]) -> None:
-        self._functions = list(probes.values())
-        self._names = list(probes)
+    functions: Mapping[str, Callable[[], Any]]
+    channels: list[tuple[str, int]] = field(default_factory=list)
 
     def values(self) -> list[float]:
         row: list[float] = []
-        for function in self._functions:
-            value = function()
+        results = [function() for function in self.functions.values()]
+        if not self.channels:
+            sizes = [0 if np.ndim(value) == 0 else np.size(value) for value in results]
+            self.channels = list(zip(self.functions, sizes, strict=True))
+        for value in results:
             if isinstance(value, (float, int)):
                 row.append(value)
             else:
                 row.extend(np.ravel(value).tolist())
         return row
-
-    def channels(self) -> list[tuple[str, int, bool]]:
-        sizes = [np.asarray(function()) for function in self._functions]
-        return [(name, value.size, value.ndim == 0) for name, value in zip(self._names, sizes, strict=True)]
 
 
 def run(
@@ -94,120 +93,147 @@ def run(
     every = 1 if control_period is None else round(control_period / step)
     if every < 1 or abs(every * step - (control_period or step)) > 1e-9:
         raise ValueError(f"the control period {control_period} s is no multiple of the physics step {step} s")
-    arms = list(world.arms.values())
-    unknown = set(controllers) - set(world.arms)
-    if unknown:
-        raise ValueError(f"controllers for arms that are not in the world: {', '.join(sorted(unknown))}")
-    for arm in arms:
-        arm.prepare(every * step)
-    driven = [(arm, controllers.get(arm.name)) for arm in arms]
-    bodies = list(world.moving.values())
-    elements = list(world.elements)
-    forces = [element.bind(world) for element in elements]
-    commands: dict[str, Any] = {}
+    scene = _Scene(world, controllers, probes, every * step, -(-steps // record_every))
     pending = sorted(((round((at - start) / step), action) for at, action in events), key=lambda item: item[0])
-    recorder, probing = Recorder(-(-steps // record_every)), Probes(probes)
-    status, done = "finished", 0
-    clock = wall.perf_counter()
+    status, done, clock = "finished", 0, _Clock(duration, world.gui)
     for k in range(steps):
         now = world.time = start + k * step
         while pending and pending[0][0] <= k:
             pending.pop(0)[1]()
-        for arm in arms:
+        trouble = scene.read(now)
+        if trouble:
+            if on_divergence == "raise":
+                raise Diverged(trouble)
+            status = trouble
+            break
+        sample = k % every == 0
+        scene.act(now, sample)
+        if k % record_every == 0:
+            scene.record(now)
+        reason = stop(now) if stop is not None and sample else None
+        if reason:
+            status = reason
+            break
+        scene.step()
+        done = k + 1
+        if k & 255 == 0 or world.gui:
+            clock.tick(now - start)
+    world.time = start + done * step
+    return Recording(series=scene.series(), steps=done, simulated=done * step, status=status)
+
+
+class _Clock:
+    """Wall time: tells the progress and, with a window open, keeps the simulation from running ahead."""
+
+    def __init__(self, duration: float, gui: bool) -> None:
+        self._duration, self._gui = duration, gui
+        self._start = self._told = wall.perf_counter()
+
+    def tick(self, simulated: float) -> None:
+        now = wall.perf_counter()
+        if Progress.report is not None and now - self._told > 0.5:
+            self._told = now
+            Progress.report(simulated, self._duration)
+        if self._gui:
+            wall.sleep(max(0.0, self._start + simulated - now))
+
+
+class _Scene:
+    """The parts of a world during one run, in lists that are quick to walk."""
+
+    def __init__(
+        self,
+        world: World,
+        controllers: Mapping[str, Controller],
+        probes: Mapping[str, Callable[[], Any]],
+        period: float,
+        rows: int,
+    ) -> None:
+        unknown = set(controllers) - set(world.arms)
+        if unknown:
+            raise ValueError(f"controllers for arms that are not in the world: {', '.join(sorted(unknown))}")
+        self._world, self._step = world, world.step
+        self._arms = list(world.arms.values())
+        for arm in self._arms:
+            arm.prepare(period)
+        self._driven = [(world.arms[name], controller) for name, controller in controllers.items()]
+        self._commands: dict[str, Any] = {}
+        self._bodies = list(world.moving.values())
+        self._elements = list(world.elements)
+        self._forces = [element.bind(world) for element in self._elements]
+        self._probes, self._recorder = Probes(probes), Recorder(rows)
+
+    def read(self, now: float) -> str:
+        """Take the state from the engine; the text says which arm diverged, if one did."""
+        for arm in self._arms:
             arm.read()
             # A sum is cheap and is not a number if any of its terms is not.
-            if not (sum(map(abs, arm.dq)) < VELOCITY_GUARD and sum(map(abs, arm.q)) < POSITION_GUARD):
-                status = _diverged(arm, now)
-        if status != "finished":
-            if on_divergence == "raise":
-                raise Diverged(status)
-            break
-        if forces:
-            for arm in arms:
-                arm.locate()
-        for body in bodies:
+            if not sum(map(abs, arm.dq)) + sum(map(abs, arm.q)) < GUARD:
+                return _diverged(arm, now)
+        for body in self._bodies:
             body.read()
-        for apply in forces:
-            apply(now)
-        _control(driven, commands, now, k % every == 0, step)
-        if k % record_every == 0:
-            if not recorder.channels:
-                recorder.channels = _channels(arms, world, elements, probing)
-            row = [now]
-            for arm in arms:
+        return ""
+
+    def act(self, now: float, sample: bool) -> None:
+        """Evaluate force elements, then controllers; between control instants only their inner loops and damping."""
+        if self._forces:
+            for arm in self._arms:
                 arm.locate()
-                row += arm.q
-                row += arm.dq
-                row += arm.torque
-                row += (arm.x, arm.y, arm.z, arm.fx, arm.fy, arm.fz)
-                if arm.force_channel is not None:
-                    row += arm.sense.force.tolist()
-            for body in bodies:
-                row += (body.x, body.y, body.z, *body.orientation)
-            for element in elements:
-                row += element.channels().values()
-            recorder.write(row + probing.values() if probes else row)
-        if stop is not None and k % every == 0:
-            reason = stop(now)
-            if reason:
-                status = reason
-                break
-        for arm in arms:
+            for apply in self._forces:
+                apply(now)
+        for arm, controller in self._driven:
+            if sample:
+                answer = self._commands[arm.name] = controller(arm.observe(now, True))
+                if callable(answer):
+                    answer = answer(arm.sense)
+            else:
+                answer = self._commands[arm.name]
+                if callable(answer):
+                    answer = answer(arm.observe(now, False))
+                elif type(answer) is not tuple:
+                    continue
+            if type(answer) is tuple:
+                arm.command(answer[0], answer[1], self._step)
+            else:
+                arm.command(answer, None, self._step)
+
+    def step(self) -> None:
+        for arm in self._arms:
             arm.apply()
-        bullet.stepSimulation(physicsClientId=world.client)
-        done = k + 1
-        if k & 255 == 0 and Progress.report is not None and wall.perf_counter() - clock > 0.5:
-            clock = wall.perf_counter()
-            Progress.report(now - start, duration)
-        if world.gui:
-            wall.sleep(step)
-    world.time = start + done * step
-    if not recorder.channels:
-        recorder.channels = _channels(arms, world, elements, probing)
-    return Recording(series=recorder.series(), steps=done, simulated=done * step, status=status)
+        bullet.stepSimulation(physicsClientId=self._world.client)
 
+    def record(self, now: float) -> None:
+        row = [now]
+        for arm in self._arms:
+            arm.locate()
+            row += arm.q
+            row += arm.dq
+            row += arm.torque
+            row += (arm.x, arm.y, arm.z, arm.fx, arm.fy, arm.fz)
+            if arm.force_channel is not None:
+                row += arm.sense.force.tolist()
+        for body in self._bodies:
+            row += (body.x, body.y, body.z, *body.orientation)
+        for element in self._elements:
+            row += element.channels().values()
+        if self._probes.functions:
+            row += self._probes.values()
+        self._recorder.write(row)
 
-def _control(
-    driven: list[tuple[SimulatedArm, Controller | None]],
-    commands: dict[str, Any],
-    now: float,
-    sample: bool,
-    step: float,
-) -> None:
-    """Ask the controllers at control instants; between them hold torques and damping, and evaluate inner loops."""
-    for arm, controller in driven:
-        if controller is None:
-            continue
-        if sample:
-            answer = commands[arm.name] = controller(arm.observe(now, True))
-            if callable(answer):
-                answer = answer(arm.sense)
-        else:
-            answer = commands[arm.name]
-            if callable(answer):
-                answer = answer(arm.observe(now, False))
-        if type(answer) is tuple:
-            arm.command(answer[0], answer[1], step)
-        elif sample or answer is not arm.torque:
-            arm.command(answer, None, step)
-
-
-def _channels(
-    arms: list[SimulatedArm], world: World, elements: list[Any], probing: Probes
-) -> list[tuple[str, int, bool]]:
-    result: list[tuple[str, int, bool]] = [("time", 1, True)]
-    for arm in arms:
-        names = [("position", arm.dof), ("velocity", arm.dof), ("torque", arm.dof), ("tip", 3), ("force", 3)]
-        if arm.force_channel is not None:
-            names.append(("sensed_force", 3))
-        result += [(f"{arm.name}.{name}", size, False) for name, size in names]
-    result += [(f"{name}.pose", 7, False) for name in world.moving]
-    result += [(f"{element.name}.{name}", 1, True) for element in elements for name in element.channels()]
-    return result + probing.channels()
+    def series(self) -> dict[str, NDArray[Any]]:
+        channels: list[tuple[str, int]] = [("time", 0)]
+        for arm in self._arms:
+            names = [("position", arm.dof), ("velocity", arm.dof), ("torque", arm.dof), ("tip", 3), ("force", 3)]
+            if arm.force_channel is not None:
+                names.append(("sensed_force", 3))
+            channels += [(f"{arm.name}.{name}", width) for name, width in names]
+        channels += [(f"{name}.pose", 7) for name in self._world.moving]
+        channels += [(f"{element.name}.{name}", 0) for element in self._elements for name in element.channels()]
+        return self._recorder.series(channels + self._probes.channels)
 
 
 def _diverged(arm: SimulatedArm, now: float) -> str:
-    if all(abs(rate) < VELOCITY_GUARD for rate in arm.dq):
+    if max(map(abs, arm.q)) > max(map(abs, arm.dq)):
         values, what, unit = arm.q, "angle", "rad"
     else:
         values, what, unit = arm.dq, "velocity", "rad/s"

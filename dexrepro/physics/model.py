@@ -32,6 +32,7 @@ class RigidBodyModel:
         self._body = load_arm(self._client, self.arm)
         bullet.setGravity(*gravity, physicsClientId=self._client)
         self._zeros = [0.0] * arm.dof
+        self._indices = list(range(arm.dof))
         self._end = EndPoint(self._client, self._body, arm)
 
     def close(self) -> None:
@@ -82,8 +83,8 @@ class RigidBodyModel:
 
     def forward(self, q: Array) -> tuple[Array, Array]:
         """Position (3,) [m] and rotation (3, 3) of the end point in the world frame."""
-        for index, angle in enumerate(_list(q)):
-            bullet.resetJointState(self._body, index, angle, physicsClientId=self._client)
+        angles = [[angle] for angle in _list(q)]
+        bullet.resetJointStatesMultiDof(self._body, self._indices, angles, physicsClientId=self._client)
         state = bullet.getLinkState(self._body, self._end.link, 0, 1, physicsClientId=self._client)
         rotation = np.array(bullet.getMatrixFromQuaternion(state[1])).reshape(3, 3)
         return np.array(state[0]) + rotation @ self._end.from_com, rotation @ self._end.rotation

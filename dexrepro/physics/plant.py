@@ -6,9 +6,8 @@ world frame, and ``push(fx, fy, fz)`` [N]. Plain floats: at 1 kHz small arrays c
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pybullet as bullet
@@ -18,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from dexrepro.physics.loading import load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import forward
+from dexrepro.robots.kinematics import PlanarTip, forward, jacobian
 
 
 class Point:
@@ -82,9 +81,12 @@ class Sense:
 
     @property
     def tip_velocity(self) -> NDArray[np.float64]:
-        """Velocity of the end point, shape (3,), world frame [m/s], from exact joint rates."""
-        self._plant.locate()
-        return np.array((self._plant.vx, self._plant.vy, self._plant.vz))
+        """Velocity of the end point, shape (3,), world frame [m/s], from the measured joint angles and rates."""
+        plant = self._plant
+        if plant.joint_channel is None:
+            plant.locate()
+            return np.array((plant.vx, plant.vy, plant.vz))
+        return jacobian(plant.arm, self.position)[:3] @ self.velocity
 
 
 class SimulatedArm(Point):
@@ -112,13 +114,14 @@ class SimulatedArm(Point):
         self.force_channel: ForceChannel | None = None
         self.joint_channel: JointChannel | None = None
         self.end = EndPoint(client, self.body, arm)
-        self._planar = _PlanarTip(arm) if arm.is_planar else None
+        self._planar = PlanarTip(arm) if arm.is_planar else None
+        self._levers: list[tuple[float, float]] = []
+        self.z = self._planar.height if self._planar else 0.0
         self.load = self._zeros
         self.q: list[float] = []
         self.dq: list[float] = []
         self.torque: Any = self._zeros
         self.fx = self.fy = self.fz = 0.0
-        self._unsensed = (0.0, 0.0, 0.0)
         self._located = False
         self.reset(position)
         self.sense = Sense(self)
@@ -131,7 +134,8 @@ class SimulatedArm(Point):
         self.read()
 
     def prepare(self, period: float) -> None:
-        """Set up the sensors for a run with a control period [s]."""
+        """Set up the sensors for a run with a control period [s], and let go of any torque of a run before."""
+        self.torque = self._zeros
         sensor = self._sensor
         self.force_channel = None if sensor.exact_force else ForceChannel(sensor, period, self._rng)
         self.joint_channel = None if sensor.exact_joints else JointChannel(sensor, period, self._rng)
@@ -143,7 +147,6 @@ class SimulatedArm(Point):
         self.dq = [state[1] for state in states]
         self._located = False
         self.fx = self.fy = self.fz = 0.0
-        self._unsensed = (0.0, 0.0, 0.0)
         self.load = self._zeros
         if self.feels_contact:
             self._feel()
@@ -154,7 +157,13 @@ class SimulatedArm(Point):
             return
         self._located = True
         if self._planar is not None:
-            self.x, self.y, self.vx, self.vy = self._planar(self.q, self.dq)
+            self._levers = levers = self._planar.levers(self.q)
+            self.x, self.y = self._planar.base[0] + levers[0][0], self._planar.base[1] + levers[0][1]
+            vx = vy = 0.0
+            for rate, (x, y) in zip(self.dq, levers):
+                vx -= rate * y
+                vy += rate * x
+            self.vx, self.vy = vx, vy
             return
         state = bullet.getLinkState(self.body, self.end.link, 1, 1, physicsClientId=self.client)
         (cx, cy, cz), (rx, ry, rz) = state[0], _rotated(state[1], self.end.from_com)
@@ -224,23 +233,26 @@ class SimulatedArm(Point):
         """
         body, client = self.body, self.client
         damping = np.asarray(damping, dtype=float)
-        matrix = np.diag(damping) if damping.ndim == 1 else damping
+        multiply = np.multiply if damping.ndim == 1 else np.matmul
         rate = np.array(self.dq)
         mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client))
         bias = np.array(bullet.calculateInverseDynamics(body, self.q, self.dq, self._zeros, physicsClientId=client))
-        rest = torque + self.load - bias - matrix @ rate
+        rest = torque + self.load - bias - multiply(damping, rate)
         if self._planar is None and (self.fx or self.fy or self.fz):
             linear, _ = bullet.calculateJacobian(
                 body, self.end.link, self.end.for_jacobian, self.q, self.dq, self._zeros, physicsClientId=client
             )
             rest += np.array((self.fx, self.fy, self.fz)) @ np.array(linear)
-        acceleration = np.linalg.solve(mass + step * matrix, rest)
-        return torque - matrix @ (rate + step * acceleration)
+        if damping.ndim == 1:
+            mass.flat[:: self.dof + 1] += step * damping
+        else:
+            mass += step * damping
+        return torque - multiply(damping, rate + step * np.linalg.solve(mass, rest))
 
     def _act(self, fx: float, fy: float, fz: float) -> None:
         self.locate()
         if self._planar is not None:
-            self.load = self._planar.torque(self.load, fx, fy)
+            self.load = [load + x * fy - y * fx for load, (x, y) in zip(self.load, self._levers)]
         else:
             bullet.applyExternalForce(
                 self.body, self.end.link, (fx, fy, fz), (self.x, self.y, self.z), bullet.WORLD_FRAME,
@@ -249,14 +261,40 @@ class SimulatedArm(Point):
 
     def _feel(self) -> None:
         """Add last step's contact forces on the last moving link and what it carries to the sensed force."""
-        for contact in bullet.getContactPoints(bodyA=self.body, physicsClientId=self.client):
-            if contact[3] < self.dof - 1:
-                continue
-            normal, first, second = contact[7], contact[11], contact[13]
-            f, g, h = contact[9], contact[10], contact[12]
-            self.fx += f * normal[0] + g * first[0] + h * second[0]
-            self.fy += f * normal[1] + g * first[1] + h * second[1]
-            self.fz += f * normal[2] + g * first[2] + h * second[2]
+        touching = [touch for touch in touches(self.client, self.body) if touch.link >= self.dof - 1]
+        self.fx += sum(touch.force[0] for touch in touching)
+        self.fy += sum(touch.force[1] for touch in touching)
+        self.fz += sum(touch.force[2] for touch in touching)
+
+
+class Touch(NamedTuple):
+    """A contact point of a body: its own link, the other body, place [m], normal force [N] and whole force (3,) [N]
+    on the body, friction included, world frame."""
+
+    link: int
+    other: int
+    position: tuple[float, float, float]
+    normal_force: float
+    force: tuple[float, float, float]
+
+
+def touches(client: int, body: int) -> list[Touch]:
+    """Contact points of a body as of the last step.
+
+    The engine is asked for all of its points: when it is asked for one body's, it turns the normal but not the
+    directions of friction where that body is the second of a pair.
+    """
+    result = []
+    for point in bullet.getContactPoints(physicsClientId=client):
+        if body not in point[1:3]:
+            continue
+        first = point[1] == body
+        sign = 1.0 if first else -1.0
+        parts = ((point[9], point[7]), (point[10], point[11]), (point[12], point[13]))
+        x, y, z = (sign * sum(size * direction[i] for size, direction in parts) for i in range(3))
+        link, other = (point[3], point[2]) if first else (point[4], point[1])
+        result.append(Touch(link, other, point[6], point[9], (x, y, z)))
+    return result
 
 
 class EndPoint:
@@ -286,42 +324,6 @@ def _rotated(quaternion: tuple[float, ...], vector: tuple[float, ...]) -> tuple[
     a, b, c = vector
     x, y, z = j * c - k * b + w * a, k * a - i * c + w * b, i * b - j * a + w * c
     return a + 2 * (j * z - k * y), b + 2 * (k * x - i * z), c + 2 * (i * y - j * x)
-
-
-class _PlanarTip:
-    """End point, its velocity and the torque of a tip force of a planar arm, in plain floats."""
-
-    def __init__(self, arm: Arm) -> None:
-        first = arm.origins[0]
-        self._base = float(first[0, 3]), float(first[1, 3])
-        turns, vectors = [], []
-        places = [*arm.origins[1:], arm.tip]
-        for origin, after in zip(arm.origins, places, strict=True):
-            turns.append(math.atan2(origin[1, 0], origin[0, 0]))
-            vectors.append((float(after[0, 3]), float(after[1, 3])))
-        self._geometry = list(zip(turns, vectors, strict=True))
-        self._arms: list[tuple[float, float]] = []
-
-    def __call__(self, q: list[float], dq: list[float]) -> tuple[float, float, float, float]:
-        angle, sides = 0.0, []
-        for (turn, (a, b)), joint in zip(self._geometry, q):
-            angle += turn + joint
-            c, s = math.cos(angle), math.sin(angle)
-            sides.append((c * a - s * b, s * a + c * b))
-        rx = ry = vx = vy = 0.0
-        arms = []
-        for (dx, dy), rate in zip(reversed(sides), reversed(dq)):
-            rx += dx
-            ry += dy
-            vx -= rate * ry
-            vy += rate * rx
-            arms.append((rx, ry))
-        arms.reverse()
-        self._arms = arms
-        return self._base[0] + rx, self._base[1] + ry, vx, vy
-
-    def torque(self, load: list[float], fx: float, fy: float) -> list[float]:
-        return [t + rx * fy - ry * fx for t, (rx, ry) in zip(load, self._arms)]
 
 
 Controller = Callable[[Sense], Any]

@@ -13,10 +13,10 @@ from dexrepro.experiment import Recording
 from dexrepro.physics import loop
 from dexrepro.physics.elements import Element, Place
 from dexrepro.physics.loading import connect, undamped
-from dexrepro.physics.plant import Controller, Point, RigidBody, SimulatedArm
+from dexrepro.physics.plant import Controller, Point, RigidBody, SimulatedArm, Touch, touches
 from dexrepro.physics.rendering import Camera, photograph
 from dexrepro.physics.sensor import Sensor
-from dexrepro.robots.arm import GREY, Arm, Colour, Shape
+from dexrepro.robots.arm import GREY, Arm, Colour, Pose, Shape
 
 Vector = Sequence[float]
 SHAPES = {"box": bullet.GEOM_BOX, "sphere": bullet.GEOM_SPHERE, "cylinder": bullet.GEOM_CYLINDER,
@@ -142,6 +142,26 @@ class World:
         """A sphere of a radius [m], centred at a position [m]; options as for add_body."""
         return self.add_body(name, [Shape("sphere", (radius,), colour=colour)], position, mass=mass, **options)
 
+    def add_opening(
+        self,
+        name: str,
+        size: tuple[float, float],
+        position: Vector,
+        rim: float = 0.05,
+        depth: float = 0.01,
+        colour: Colour = GREY,
+        **options: Any,
+    ) -> RigidBody:
+        """A static frame around a rectangular hole of a size (x, y) [m] in the plane z of its own frame.
+
+        rim: width of the frame around the hole [m]; depth: its thickness [m]; options as for add_body (rpy turns it).
+        """
+        x, y = size
+        beams = [((x + rim) / 2 * side, 0.0, 0.0, rim, y) for side in (-1, 1)]
+        beams += [(0.0, (y + rim) / 2 * side, 0.0, x + 2 * rim, rim) for side in (-1, 1)]
+        shapes = [Shape("box", (long, wide, depth), Pose((a, b, c)), colour) for a, b, c, long, wide in beams]
+        return self.add_body(name, shapes, position, **options)
+
     def hang(
         self,
         name: str,
@@ -199,14 +219,19 @@ class World:
 
     def contacts(self, first: str, second: str | None = None) -> list[Contact]:
         """Points where a named body touches another one (or anything), as of the last step."""
-        other = {} if second is None else {"bodyB": self._body(second)}
-        points = bullet.getContactPoints(bodyA=self._body(first), physicsClientId=self.client, **other)
         links = self.arms[first].links if first in self.arms else []
-        return [Contact(links[p[3]] if 0 <= p[3] < len(links) else "base", p[6], p[9]) for p in points]
+        points = self._touches(first, second)
+        return [
+            Contact(links[t.link] if 0 <= t.link < len(links) else "base", t.position, t.normal_force) for t in points
+        ]
 
     def contact_force(self, first: str, second: str | None = None) -> float:
         """Sum of the normal forces between two named bodies [N], as of the last step."""
-        return sum(contact.force for contact in self.contacts(first, second))
+        return sum(touch.normal_force for touch in self._touches(first, second))
+
+    def contact_vector(self, first: str, second: str | None = None) -> NDArray[np.float64]:
+        """Contact force on the first body, friction included, shape (3,), world frame [N], as of the last step."""
+        return np.sum([touch.force for touch in self._touches(first, second)] or [(0.0, 0.0, 0.0)], axis=0)
 
     def distance(self, first: str, second: str, limit: float = 1.0) -> float:
         """Smallest distance between two named bodies [m], negative where they overlap, at most ``limit``."""
@@ -269,6 +294,21 @@ class World:
         bullet.restoreState(stateId=state, physicsClientId=self.client)
         bullet.removeState(state, physicsClientId=self.client)
         return image
+
+    def _touches(self, first: str, second: str | None) -> list[Touch]:
+        found = touches(self.client, self._body(first))
+        return found if second is None else [touch for touch in found if touch.other == self._body(second)]
+
+    def snapshot(
+        self, recording: Recording, time: float, camera: Camera = Camera(), size: tuple[int, int] = (640, 480)
+    ) -> NDArray[np.uint8]:
+        """Picture (height, width, 3) of the sample of a recording that is nearest to a time [s]."""
+        index = int(np.abs(recording.time - time).argmin())
+        positions = {
+            name: recording[f"{name}.position"][index] for name in self.arms if f"{name}.position" in recording
+        }
+        poses = {name: recording[f"{name}.pose"][index] for name in self.bodies if f"{name}.pose" in recording}
+        return self.render(positions, poses, camera, size)
 
     def _body(self, name: str) -> int:
         return self.bodies[name].body if name in self.bodies else self.arm(name).body

@@ -1,40 +1,297 @@
-"""A plain index page over everything in results/."""
+"""The HTML report: one folder that opens from disk, built from the files in results/ alone."""
 
 from __future__ import annotations
 
+import json
 import os
+import shutil
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import jinja2
+import pandas as pd
 
-from dexrepro.storage import read_json
+from dexrepro import __version__, chapters, study
+from dexrepro.config import compose_chapter, provenance, resolved_block
+from dexrepro.experiment import (
+    AFTER_CORRECTION,
+    NOT_EVALUATED,
+    NOT_REPRODUCED,
+    NOT_TESTABLE,
+    REPRODUCED,
+    Experiment,
+)
+from dexrepro.report import equations
+from dexrepro.report.style import file_stem
+from dexrepro.storage import read_json, whole_folder
 
-_TEMPLATE = jinja2.Environment(autoescape=True).from_string("""<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><title>dexrepro</title>
-<style>body{font-family:sans-serif;max-width:60rem;margin:auto;padding:1rem}img{max-width:100%}</style></head><body>
-<h1>dexrepro</h1>
-{% for result in results %}<h2>{{ result.title }}</h2>
-<ul>{% for claim in result.claims %}
-<li>{{ claim.id }} {{ claim.statement }}: <b>{{ claim.verdict }}</b></li>{% endfor %}</ul>
-{% for figure in result.figures %}<p><img src="{{ figure }}" alt="{{ figure }}"></p>{% endfor %}
-{% endfor %}</body></html>
-""")
+VERDICTS = (REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED, NOT_TESTABLE)
+KINDS = {
+    "error": "Inconsistent with the book's own equations: derived, with measured evidence.",
+    "gap": "Something an implementation needs is not printed.",
+    "reading": "Defensible as printed, under the reading named.",
+    "slip": "Typesetting, or possibly the text extraction.",
+}
 
 
 def build(results: Path) -> Path:
-    """Write ``results/report/index.html`` and return its path."""
-    folder = results / "report"
-    folder.mkdir(parents=True, exist_ok=True)
-    entries = []
-    for run in sorted(results.glob("chapter*/*/run.json")):
-        place = run.parent
-        entries.append(
+    """Write ``results/report/`` and return the path of its index.html."""
+    with whole_folder(results / "report") as folder:
+        _Report(results, folder).write()
+    return results / "report" / "index.html"
+
+
+class _Report:
+    """Collects what is in results/, copies what the pages show, and renders the pages."""
+
+    def __init__(self, results: Path, folder: Path) -> None:
+        self.results, self.folder = results, folder
+        loader = jinja2.PackageLoader("dexrepro.report", "templates")
+        self.templates = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True)
+        self.search: list[dict[str, str]] = []
+
+    def write(self) -> None:
+        book = [self._chapter(number) for number in chapters.numbers()]
+        book = [chapter for chapter in book if chapter["experiments"]]
+        index, parameters = equations.index(), [p for c in book for e in c["experiments"] for p in e["parameters"]]
+        for entry in index:
+            text = f"Eq. ({entry['equation']}): {entry['name']}, {entry['file']}:{entry['line']}"
+            self._searchable(text, f"equations.html#eq-{entry['equation']}")
+        common: dict[str, Any] = {"chapters": book, "provenance": self._provenance(book)}
+        self._page("index", here="index", **common, **self._front(book))
+        for chapter in book:
+            self._page(f"chapter{chapter['number']}", "chapter", here=chapter["number"], chapter=chapter, **common)
+        self._page("equations", here="equations", equations=index, parameters=parameters, **common)
+        for name in ("style.css", "app.js"):
+            shutil.copyfile(Path(__file__).parent / "templates" / name, self.folder / name)
+        data = json.dumps(self.search, separators=(",", ":")).replace("<", "\\u003c")
+        (self.folder / "search-index.js").write_text(f"const SEARCH_INDEX = {data};\n")
+
+    def _page(self, name: str, template: str | None = None, **values: Any) -> None:
+        text = self.templates.get_template(f"{template or name}.html").render(**values)
+        (self.folder / f"{name}.html").write_text(text)
+
+    def _searchable(self, text: str, to: str) -> None:
+        self.search.append({"text": text, "to": to})
+
+    # ------------------------------------------------------------------------------------------------- the chapters
+
+    def _chapter(self, number: str) -> dict[str, Any]:
+        chapter = chapters.load(number)
+        place = self.results / f"chapter{number}"
+        composed, origins = compose_chapter(number), provenance(number)
+        made = [e for e in chapter.experiments if (place / e.name / "run.json").exists()]
+        metrics: dict[str, Any] = {}
+        for experiment in made:
+            metrics |= read_json(place / experiment.name / "metrics.json")
+        experiments = []
+        for experiment in made:
+            entry = self._experiment(number, experiment, place / experiment.name)
+            entry["parameters"] = _parameters(experiment.name, composed, origins)
+            entry["references"] = [
+                {**vars(item), "ours": metrics.get(item.metric)}
+                for item in chapter.references
+                if item.metric.partition(".")[0] == experiment.name
+            ]
+            experiments.append(entry)
+        errata = []
+        for item in chapter.errata:
+            evidence = [(name, metrics.get(name)) for name in item.evidence]
+            errata.append({**vars(item), "evidence": evidence})
+            self._searchable(f"{item.id} {item.equation}: {item.summary}", f"chapter{number}.html#{item.id}")
+        untestable = [claim.evaluate({}) for claim in chapter.claims if claim.not_testable]
+        runs = [run for run in self._own_runs() if run["chapter"] == number]
+        return {
+            "number": number,
+            "title": chapter.title,
+            "experiments": experiments,
+            "errata": errata,
+            "untestable": untestable,
+            "runs": runs,
+        }
+
+    def _experiment(self, number: str, experiment: Experiment, place: Path) -> dict[str, Any]:
+        run, claims = read_json(place / "run.json"), read_json(place / "claims.json")
+        target = self.folder / "files" / experiment.name
+        target.mkdir(parents=True)
+        files = []
+        for path in sorted([*place.glob("*.json"), place / "config.yaml", *place.glob("series/*")]):
+            _copy(path, target / path.name)
+            files.append({"name": path.name, "path": f"files/{experiment.name}/{path.name}"})
+        for claim in claims:
+            self._searchable(f"{claim['id']} {claim['statement']}", f"chapter{number}.html#{claim['id']}")
+        factor = f", {run['real_time_factor']:.1f} times real time" if run["real_time_factor"] else ""
+        packages = ", ".join(f"{name} {version}" for name, version in run["packages"].items())
+        return {
+            "name": experiment.name,
+            "summary": experiment.summary,
+            "claims": claims,
+            "figures": [
+                self._figure(number, identifier, figure.caption, figure.alt, place, target, claims)
+                for identifier, figure in experiment.figures.items()
+                if (place / "figures" / f"{file_stem(identifier)}.svg").exists()
+            ],
+            "tables": [
+                self._table(number, identifier, title, place / "tables" / f"{identifier}.csv", target)
+                for identifier, title in experiment.tables.items()
+                if (place / "tables" / f"{identifier}.csv").exists()
+            ],
+            "animations": [
+                {"name": path.stem, "path": _copied(path, target, f"files/{experiment.name}")}
+                for path in sorted(place.glob("animation/*.gif"))
+            ],
+            "files": files,
+            "run": run,
+            "provenance": (
+                f"dexrepro {run['version']}, revision {run['revision'] or 'unknown'}, seed {run['seed']}; {packages}; "
+                f"Python {run['python']}; {run['machine']}; {run['wall']:.1f} s of one core{factor}"
+            ),
+        }
+
+    def _figure(
+        self, number: str, identifier: str, caption: str, alt: str, place: Path, target: Path, claims: list[Any]
+    ) -> dict[str, Any]:
+        stem = file_stem(identifier)
+        for suffix in (".svg", ".png"):
+            _copy(place / "figures" / f"{stem}{suffix}", target / f"{stem}{suffix}")
+        self._searchable(f"Fig. {identifier}: {caption}", f"chapter{number}.html#fig-{identifier}")
+        return {
+            "id": identifier,
+            "chapter": number,
+            "caption": caption,
+            "alt": alt or caption,
+            "svg": f"files/{target.name}/{stem}.svg",
+            "png": f"files/{target.name}/{stem}.png",
+            "claims": [claim for claim in claims if _concerns(claim["figure"], identifier)],
+        }
+
+    def _table(self, number: str, identifier: str, title: str, path: Path, target: Path) -> dict[str, Any]:
+        frame = pd.read_csv(path)
+        _copy(path, target / path.name)
+        (target / f"{identifier}.tex").write_text(frame.to_latex(index=False, float_format="%.4g", escape=True))
+        self._searchable(f"Table {identifier}: {title}", f"chapter{number}.html#tab-{identifier}")
+        html = frame.to_html(index=False, float_format=lambda x: f"{x:.4g}", na_rep="–", border=0)
+        base = f"files/{target.name}/{identifier}"
+        return {"id": identifier, "title": title, "html": html, "csv": f"{base}.csv", "tex": f"{base}.tex"}
+
+    def _own_runs(self) -> list[dict[str, Any]]:
+        runs = []
+        for path in sorted(self.results.glob("runs/*/run.json")):
+            run = read_json(path)
+            runs.append(
+                {"name": path.parent.name, "chapter": run["chapter"], "differs": "; ".join(run["differs"][:12])}
+            )
+        return runs
+
+    # ------------------------------------------------------------------------------------------------ the front page
+
+    def _front(self, book: list[dict[str, Any]]) -> dict[str, Any]:
+        rows = [_score(chapter) for chapter in book]
+        ours = [row["own"] for row in rows]
+        totals = {
+            "counts": [sum(column) for column in zip(*(row["counts"] for row in rows), strict=True)],
+            "built_in": sum(row["built_in"] for row in rows),
+            "ours": f"{sum(held for held, _ in ours)} of {sum(made for _, made in ours)}",
+        }
+        errata = [
+            (kind, meaning, [item for chapter in book for item in chapter["errata"] if item["kind"] == kind])
+            for kind, meaning in KINDS.items()
+        ]
+        return {
+            "verdicts": VERDICTS,
+            "scoreboard": rows,
+            "totals": totals,
+            "gallery": [figure for c in book for figure in _in_book_order(c)],
+            "errata": errata,
+            "studies": [{"claim": claim, **row} for item in study.stored() for claim, row in item["claims"].items()],
+        }
+
+    def _provenance(self, book: list[dict[str, Any]]) -> str:
+        runs = [experiment["run"] for chapter in book for experiment in chapter["experiments"]]
+        revisions = sorted({run["revision"] or "unknown" for run in runs})
+        wall = sum(run["wall"] for run in runs)
+        return (
+            f"dexrepro {__version__}; results of revision {', '.join(revisions) or 'none'}; "
+            f"{len(runs)} experiments, {wall:.0f} s of one core in all"
+        )
+
+
+def _score(chapter: Mapping[str, Any]) -> dict[str, Any]:
+    claims = [claim for experiment in chapter["experiments"] for claim in experiment["claims"]] + chapter["untestable"]
+    book = [claim for claim in claims if claim["source"] == "book"]
+    own = [claim for claim in claims if claim["source"] != "book" and claim["verdict"] != NOT_EVALUATED]
+    held = sum(claim["verdict"] in (REPRODUCED, AFTER_CORRECTION) for claim in own)
+    return {
+        "number": chapter["number"],
+        "title": chapter["title"],
+        "counts": [sum(claim["verdict"] == verdict for claim in book) for verdict in VERDICTS],
+        "built_in": sum(bool(claim["by_construction"]) for claim in book),
+        "own": (held, len(own)),
+        "ours": f"{held} of {len(own)}",
+    }
+
+
+def _in_book_order(chapter: Mapping[str, Any]) -> list[dict[str, Any]]:
+    figures = [figure for experiment in chapter["experiments"] for figure in experiment["figures"]]
+
+    def place(figure: Mapping[str, Any]) -> tuple[int, str]:
+        rest = figure["id"].partition(".")[2]
+        digits = "".join(character for character in rest if character.isdigit())
+        return (int(digits) if digits else 999, rest)
+
+    return sorted(figures, key=place)
+
+
+def _concerns(claimed: str, identifier: str) -> bool:
+    """Whether a claim about "2.8a" or "2.5, 2.6" is about the figure "2.8"."""
+    parts = [part.strip() for part in claimed.replace(";", ",").split(",")]
+    return any(part == identifier or part.rstrip("abcdefgh") == identifier.rstrip("abcdefgh") for part in parts)
+
+
+def _parameters(experiment: str, composed: Mapping[str, Any], origins: Mapping[str, Any]) -> list[dict[str, Any]]:
+    rows = []
+    for key, value in _flat(resolved_block(composed, experiment), experiment):
+        origin = origins.get(key) or _origin_of_reference(key, composed, origins)
+        bounds = f"{origin.low:g} to {origin.high:g}" if origin and origin.low is not None else ""
+        rows.append(
             {
-                "title": f"{place.parent.name}: {place.name}",
-                "claims": read_json(place / "claims.json"),
-                "figures": [os.path.relpath(path, folder) for path in sorted((place / "figures").glob("*.png"))],
+                "key": key,
+                "value": value,
+                "unit": origin.unit if origin else "",
+                "kind": origin.kind if origin else "",
+                "text": origin.text if origin else "",
+                "range": bounds,
             }
         )
-    page = folder / "index.html"
-    page.write_text(_TEMPLATE.render(results=entries))
-    return page
+    return rows
+
+
+def _origin_of_reference(key: str, composed: Mapping[str, Any], origins: Mapping[str, Any]) -> Any:
+    node: Any = composed
+    for part in key.split("."):
+        node = node.get(part) if isinstance(node, Mapping) else None
+    text = node.strip("${} ") if isinstance(node, str) and node.startswith("${") else ""
+    return origins.get(text)
+
+
+def _flat(node: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
+    rows: list[tuple[str, Any]] = []
+    for key, value in node.items():
+        if isinstance(value, Mapping):
+            rows += _flat(value, f"{prefix}.{key}")
+        else:
+            rows.append((f"{prefix}.{key}", value))
+    return rows
+
+
+def _copied(source: Path, folder: Path, link: str) -> str:
+    _copy(source, folder / source.name)
+    return f"{link}/{source.name}"
+
+
+def _copy(source: Path, target: Path) -> None:
+    try:
+        os.link(source, target)
+    except OSError:
+        shutil.copyfile(source, target)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from matplotlib.figure import Figure
 MM = 1 / 25.4
 ONE_COLUMN = 85 * MM  # inch
 TWO_COLUMNS = 178 * MM
+TITLE_CHARACTER = 0.076  # inch a character of the title takes
 
 # Okabe-Ito, safe for colour-blind readers. A colour keeps its meaning in all chapters.
 BOOK = "#0072B2"  # the book's method
@@ -83,7 +85,8 @@ def subplots(
 
 
 def title(figure: Figure, text: str) -> None:
-    """The finding, above all panels, left-aligned."""
+    """The finding, above all panels, left-aligned, broken into lines that fit the width."""
+    text = textwrap.fill(text, int(figure.get_figwidth() / TITLE_CHARACTER))
     figure.suptitle(text, x=0.01, ha="left", fontsize=9, fontweight="bold")
 
 

@@ -217,6 +217,23 @@ class Arm:
         return (self.base.matrix @ first, *rest)
 
     @cached_property
+    def axes(self) -> NDArray[np.float64]:
+        """Joint axes in the frames of their links, shape (n, 3)."""
+        return np.array([joint.axis for joint in self.joints])
+
+    @cached_property
+    def turns(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """O, O K and O K^2 of every joint, (n, 4, 4) each: its origin and the cross-product matrix of its axis.
+
+        Turned by an angle q, the transform is O + sin(q) O K + (1 - cos(q)) O K^2 (Rodrigues' formula).
+        """
+        origins = np.array(self.origins)
+        cross = np.zeros_like(origins)
+        for matrix, (x, y, z) in zip(cross, self.axes, strict=True):
+            matrix[:3, :3] = ((0, -z, y), (z, 0, -x), (-y, x, 0))
+        return origins, origins @ cross, origins @ cross @ cross
+
+    @cached_property
     def tip(self) -> NDArray[np.float64]:
         """Transform of the end point (of the tool, if there is one) in the last moving link, (4, 4)."""
         transform = np.eye(4)
@@ -227,7 +244,7 @@ class Arm:
             transform = transform @ self.tool.mount.matrix @ self.tool.tip.matrix
         return transform
 
-    @property
+    @cached_property
     def is_planar(self) -> bool:
         """True if every joint turns about the world's z axis and the end point stays in one plane z = const."""
         return all(

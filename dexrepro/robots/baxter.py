@@ -74,6 +74,15 @@ def mirrored(right: Any, side: str = "left") -> NDArray[np.float64]:
     return angles * MIRRORED if side == "left" else angles
 
 
+def torso() -> tuple[Shape, ...]:
+    """Shapes of the body between the arms, in the torso frame, to be looked at."""
+    return (
+        Shape("box", (0.20, 0.34, 0.50), Pose((-0.02, 0.0, 0.10)), DARK, collides=False),
+        Shape("cylinder", (0.12, 0.70), Pose((-0.02, 0.0, -0.50)), DARK, collides=False),
+        Shape("box", (0.04, 0.24, 0.16), Pose((0.10, 0.0, 0.50)), DARK, collides=False),
+    )
+
+
 def extension(length: float = 0.15, radius: float = 0.015) -> Tool:
     """A massless gripper of some length [m] along the tool's z axis; its end point is the tip."""
     shape = Shape.between((0, 0, 0), (0, 0, length), radius, DARK)

@@ -1,0 +1,118 @@
+"""The report opens from disk in a real browser: nothing missing, nothing fetched from elsewhere, search works."""
+
+from __future__ import annotations
+
+import html.parser
+import json
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from dexrepro.report import equations, page
+from dexrepro.runner import plan_chapter, run_plans
+
+BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+
+@pytest.fixture
+def report(toy: Path) -> Path:
+    plans, _ = plan_chapter("90")
+    run_plans(plans, workers=1, force=False)
+    return page.build(Path("results")).parent
+
+
+class Links(html.parser.HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.targets: list[str] = []
+        self.ids: set[str] = set()
+
+    def handle_starttag(self, tag: str, attributes) -> None:
+        for key, value in attributes:
+            if key in ("href", "src") and value:
+                self.targets.append(value)
+            if key == "id":
+                self.ids.add(value)
+
+
+def test_every_link_leads_to_something_inside_the_folder(report: Path) -> None:
+    for file in report.glob("*.html"):
+        links = Links()
+        links.feed(file.read_text())
+        for target in links.targets:
+            if target.startswith(("#", "data:")):
+                continue
+            name, _, anchor = target.partition("#")
+            assert not re.match(r"\w+:|/|\.\.", name), f"{file.name} leaves the folder: {target}"
+            assert (report / name).exists(), f"{file.name}: {target}"
+            if anchor:
+                there = Links()
+                there.feed((report / name).read_text())
+                assert anchor in there.ids, f"{file.name}: {target}"
+
+
+def test_the_scoreboard_counts_the_verdicts(report: Path) -> None:
+    text = (report / "index.html").read_text()
+    row = re.search(r'<th scope="row"><a href="chapter90.html">.*?</tr>', text, re.DOTALL)[0]
+    assert re.findall(r"<td>(.*?)</td>", row) == ["2", "", "1", "", "", "0 of 0"]
+
+
+def test_text_from_configurations_is_escaped(toy: Path) -> None:
+    plans, _ = plan_chapter("90")
+    plans[0].block["note"] = "<script>alert(1)</script>"
+    run_plans(plans, workers=1, force=False)
+    path = toy / "results/chapter90/decay/claims.json"
+    claims = json.loads(path.read_text())
+    claims[0]["statement"] = "<img src=x onerror=alert(1)>"
+    path.write_text(json.dumps(claims))
+    folder = page.build(Path("results")).parent
+    for file in folder.glob("*.html"):
+        assert "<img src=x" not in file.read_text()
+    assert "<img" not in (folder / "search-index.js").read_text()
+
+
+def test_equations_are_found_in_docstrings(tmp_path: Path) -> None:
+    package = tmp_path / "pack"
+    package.mkdir()
+    (package / "law.py").write_text('class Law:\n    """A law, Eqs. (2.16)-(2.18).\n\n    Also Eq. (2.9).\n    """\n')
+    found = [(e["equation"], e["name"], e["line"]) for e in equations.index(package)]
+    assert found == [("2.9", "Law", 1), ("2.16", "Law", 1), ("2.18", "Law", 1)]
+
+
+@pytest.mark.skipif(BROWSER is None and not os.environ.get("CI"), reason="no Chromium is installed")
+def test_in_a_real_browser(report: Path, tmp_path: Path) -> None:
+    assert BROWSER, "continuous integration installs Chromium"
+    probe = """<script>
+    window.addEventListener('error', (e) => document.title = 'ERROR ' + (e.message || e.target.src), true);
+    window.addEventListener('load', () => setTimeout(() => {
+      const shown = [...document.images].filter((i) => i.getAttribute('src'));
+      const broken = shown.filter((i) => !(i.complete && i.naturalWidth)).length;
+      const box = document.getElementById('search');
+      box.value = 'nothing grows';
+      box.dispatchEvent(new Event('input'));
+      const hit = document.querySelector('#found a');
+      const away = performance.getEntriesByType('resource').filter((r) => !r.name.startsWith('file:')).length;
+      const state = {broken, away, hit: hit && hit.getAttribute('href'), title: document.title};
+      const pre = document.createElement('pre'); pre.id = 'probe'; pre.textContent = JSON.stringify(state);
+      document.body.append(pre);
+    }, 300));
+    </script>"""
+    for name in ("index.html", "chapter90.html", "equations.html"):
+        text = (report / name).read_text().replace('loading="lazy"', "").replace("<head>", f"<head>{probe}")
+        (report / f"probe-{name}").write_text(text)
+        flags = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking"
+        command = [BROWSER, *flags.split(), "--disable-component-update", "--disable-sync", "--dump-dom",
+                   "--enable-logging=stderr", "--virtual-time-budget=4000", f"--user-data-dir={tmp_path / 'profile'}",
+                   (report / f"probe-{name}").resolve().as_uri()]  # fmt: skip
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        found = re.search(r'<pre id="probe">(.*?)</pre>', done.stdout)
+        assert found, done.stderr[-2000:]
+        state = json.loads(found[1].replace("&amp;", "&"))
+        assert not state["title"].startswith("ERROR"), state
+        assert (state["broken"], state["away"]) == (0, 0), state
+        assert state["hit"] == "chapter90.html#C90.02", state
+        assert "CONSOLE" not in done.stderr, done.stderr[-2000:]

@@ -1,0 +1,130 @@
+"""The commands of the README and the manual, typed in a shell."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, Shell
+
+ONLY_K = [f"~movement_estimation.cases.{case}" for case in ("sigma", "light", "printed", "total")]
+SHORT = " ".join(["movement_estimation.duration=0.05", *map(repr, ONLY_K)])
+
+
+@pytest.mark.parametrize(
+    ("command", "expected"),
+    [
+        ("dexrepro --version", "dexrepro 0."),
+        ("dexrepro run --help", "dexrepro run chapter=N --cfg job"),
+        ("dexrepro run chapter=2 --cfg job", "movement_estimation:"),
+        ("dexrepro list", "movement_estimation: 2.6, 2.7"),
+        (f"dexrepro run chapter=2 only=movement_estimation {SHORT}", "differs from the book in: duration=0.05"),
+        (f"dexrepro run figure=2.7 {SHORT}", "results/runs/movement_estimation"),
+        (
+            f"dexrepro run chapter=2 only=movement_estimation 'movement_estimation.stiffness=[25,60]' {SHORT}",
+            "stiffness=[25, 60]",
+        ),
+        (
+            f"dexrepro run -m chapter=2 only=movement_estimation 'seed=range(2)' {SHORT} hydra/launcher=joblib",
+            "seed=1 (book: 0)",
+        ),
+        ("dexrepro report", "results/report/index.html"),
+    ],
+)
+def test_a_command_of_the_manual_works(shell: Shell, command: str, expected: str) -> None:
+    done = shell(command)
+    assert done.returncode == 0, done.stderr
+    assert expected in done.stdout
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("command", "status", "sentence"),
+    [
+        ("dexrepro run chapter=99", 2, "unknown chapter '99'"),
+        ("dexrepro run -m chapter=2,99", 2, "unknown chapter '99'"),
+        ("dexrepro run figure=2.77", 2, "unknown figure '2.77'"),
+        ("dexrepro run chapter=2 only=movement_estimaton", 2, "did you mean 'movement_estimation'?"),
+        ("dexrepro run -m chapter=2 sed=1,2", 2, "unknown key 'sed': did you mean 'seed'?"),
+        ("dexrepro run chapter=2 workers=0", 2, "workers = 0 is not allowed"),
+        ("dexrepro check chapter=2", 2, "run: dexrepro run chapter=2"),
+        ("dexrepro diff here there", 2, "here holds no result"),
+        ("dexrepro draw case=s1", 2, "'case=s1' has no meaning here"),
+    ],
+)
+def test_a_mistake_gets_one_sentence(shell: Shell, command: str, status: int, sentence: str) -> None:
+    done = shell(command)
+    assert done.returncode == status
+    assert sentence in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_list_is_json_that_scripts_can_rely_on(shell: Shell) -> None:
+    data = json.loads(shell("dexrepro list --json").stdout)
+    chapter = next(chapter for chapter in data["chapters"] if chapter["chapter"] == "2")
+    assert {"chapter", "title", "experiments", "claims", "errata"} <= set(chapter)
+    assert {"name", "cases", "figures", "tables"} <= set(chapter["experiments"][0])
+    assert {"id", "figure", "statement", "predicate"} <= set(chapter["claims"][0])
+    assert {"id", "equation", "summary", "switch"} <= set(chapter["errata"][0])
+
+
+def test_a_case_that_fails_gives_status_1_and_its_reason(shell: Shell) -> None:
+    done = shell(f"dexrepro run figure=2.7 {SHORT} movement_estimation.law._target_=nosuch.Law")
+    assert done.returncode == 1
+    assert "2 more failed: cannot build the objects of the configuration" in done.stderr
+
+
+def test_ctrl_c_leaves_no_half_result_and_the_next_run_completes_it(tmp_path: Path, shell: Shell) -> None:
+    command = [
+        sys.executable, "-m", "dexrepro", "run", "figure=2.7", "movement_estimation.duration=3.0", "workers=1", *ONLY_K,
+    ]  # fmt: skip
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen(command, cwd=tmp_path, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    cache = tmp_path / "results/.cache/movement_estimation"
+    deadline = time.monotonic() + 60
+    while not list(cache.glob("k25-*/case.json")) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, stderr = process.communicate(timeout=60)
+    assert process.returncode == 130, stderr
+    assert not list((tmp_path / "results").glob("runs/movement*"))
+    done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "movement_estimation.k25:" not in done.stdout, "the finished case was run again"
+    assert len(list((tmp_path / "results/runs").glob("movement*/metrics.json"))) == 1
+
+
+def test_diff_names_what_differs(shell: Shell, tmp_path: Path) -> None:
+    for rest_length in (0.55, 0.5):
+        done = shell(f"dexrepro run figure=2.7 {SHORT} movement_estimation.rest_length={rest_length}")
+        assert done.returncode == 0, done.stderr
+    a, b = sorted(path.relative_to(tmp_path) for path in (tmp_path / "results/runs").glob("movement*"))
+    done = shell(f"dexrepro diff {a} {b}")
+    assert done.returncode == 0, done.stderr
+    assert "rest_length" in done.stdout
+    assert "metric   movement_estimation.k25." in done.stdout
+    assert list((tmp_path / "results/runs").glob("diff-*.png"))
+
+
+def test_a_recorded_run_is_animated_without_simulating(shell: Shell, tmp_path: Path) -> None:
+    assert shell(f"dexrepro run figure=2.7 {SHORT}").returncode == 0
+    folder = next((tmp_path / "results/runs").glob("movement*"))
+    done = shell(f"dexrepro render {folder} case=k35")
+    assert done.returncode == 0, done.stderr
+    assert (folder / "animation/k35.gif").read_bytes()[:4] == b"GIF8"
+    assert "did you mean 'k35'" in shell(f"dexrepro render {folder} case=k36").stderr
+
+
+def test_a_new_controller_comes_with_a_test_that_passes(shell: Shell, tmp_path: Path) -> None:
+    done = shell("dexrepro new controller MyLaw")
+    assert done.returncode == 0, done.stderr
+    assert "my_law.MyLaw" in done.stdout
+    assert shell(f"{sys.executable} -m pytest -q -p no:cacheprovider test_my_law.py").returncode == 0
+    assert "exists already" in shell("dexrepro new controller MyLaw").stderr
+    assert "must be a class name" in shell("dexrepro new controller my-law").stderr

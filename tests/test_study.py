@@ -1,0 +1,53 @@
+"""A study varies what the book does not print, counts, resumes, and names what matters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from dexrepro import study
+from dexrepro.config import InputError
+from dexrepro.storage import read_json
+
+RESULTS = Path("results")
+
+
+@pytest.fixture
+def folder(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(study, "baseline_dir", lambda: toy / "baselines")
+    return toy
+
+
+def test_only_parameters_with_a_declared_range_are_varied(folder: Path) -> None:
+    assert set(study.parameters("90", "decay")) == {"decay.start"}
+    values, cases = study.draw("90", "decay", 3)
+    assert 0.5 <= values["decay.start"] <= 2
+    assert all(case["start"] == values["decay.start"] for case in cases.values())
+    assert study.draw("90", "decay", 3) == (values, cases)
+
+
+def test_a_study_counts_how_often_each_claim_holds_and_what_it_follows(folder: Path) -> None:
+    result = read_json(study.run("90", "decay", 12, RESULTS, workers=1))
+    always, sometimes = result["claims"]["C90.01"], result["claims"]["C90.02"]
+    assert (always["holds"], always["samples"]) == (12, 12)
+    assert always["low"] == pytest.approx(12 / (12 + 1.959964**2), rel=1e-4), "Wilson's interval"
+    starts = [study.draw("90", "decay", index)[0]["decay.start"] for index in range(12)]
+    assert sometimes["holds"] == sum(start < 1 for start in starts)
+    assert sometimes["parameter"] == "decay.start"
+    assert result["failed"] == 0
+
+
+def test_a_study_resumes_and_survives_a_line_cut_short(folder: Path) -> None:
+    study.run("90", "decay", 4, RESULTS, workers=1)
+    lines = RESULTS / "study/decay.jsonl"
+    kept = lines.read_text().splitlines(keepends=True)
+    lines.write_text("".join(kept[:3]) + kept[3][:20] + "\n")
+    study.run("90", "decay", 6, RESULTS, workers=1)
+    assert lines.read_text().startswith("".join(kept[:3]))
+    assert sorted(entry["index"] for entry in study._read(lines)) == list(range(6))
+
+
+def test_an_unknown_claim_is_refused(folder: Path) -> None:
+    with pytest.raises(InputError, match=r"did you mean 'C90.01'"):
+        study.experiments_of("90", [], "C90.1")
