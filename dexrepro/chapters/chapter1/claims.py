@@ -233,12 +233,21 @@ CLAIMS = (
         "fields alone never touch it.",
     ),
     Claim(
-        "C1.20",
+        "C1.20a",
+        "1.16e",
+        "AFR comes to the object when DFR does, and not before DFR approaches.",
+        within(f"{READY}.adjustable.own_before_partner", -1.5, 1.5),
+        where="1.5.2.1",
+        note="Difference of the instants at which the two end points reach the surface [s].",
+    ),
+    Claim(
+        "C1.20b",
         "1.16e",
         "AFR assists at the right time: not before DFR touches the object.",
         less(f"{READY}.adjustable.own_before_partner", 0.0),
         where="1.5.2.1",
-        note="For any varpi below 2 the field lets AFR touch first: at a distance of r / (varpi - 1) > r.",
+        note="For any varpi below 2 the field lets AFR touch first: at a distance of r / (varpi - 1) > r. With varpi "
+        "= 2, or with a third of the compliance, it touches after DFR (T1.E).",
     ),
     Claim(
         "C1.21",
@@ -321,11 +330,12 @@ CLAIMS = (
     Claim(
         "C1.28",
         "1.17",
-        "One law is compliant for rigid and for deformable objects alike.",
+        "One gain of the law serves rigid and deformable objects alike.",
         less("rigid_boxes.gain25.rmse", 1.0),
-        where="1.5.2.2",
-        note="With the gain that is printed for the soft object the force on a rigid box never settles; from 0.02 on "
-        "it jumps from sample to sample. With a gain for each range of stiffness both are held (C1.22, C1.23a).",
+        source="ours",
+        note="The book says that one law is compliant for both, not that one gain is. With the gain printed for the "
+        "soft object the force on a rigid box never settles; from 0.02 on it jumps from sample to sample. With a "
+        "gain for each range of stiffness both are held (C1.22, C1.23a).",
     ),
     Claim(
         "C1.29",
@@ -341,7 +351,8 @@ CLAIMS = (
         "The proposed law beats a force controller and a passive impedance with tuned gains, at its own tuned gain.",
         every(_tracking("rmse", "proposed_tuned", "force_tuned"), _tracking("rmse", "proposed_tuned", "passive_tuned")),
         source="ours",
-        note="Twelve gains each (T1.H). Proposed law and force controller take the same gain and tie.",
+        note="Twelve gains each (T1.H). Proposed law and force controller take the same gain, the largest tried, and tie "
+        "within 0.3 % over the whole run; after 5 s the proposed law is better.",
     ),
     Claim(
         "C1.31",

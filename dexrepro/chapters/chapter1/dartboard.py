@@ -179,7 +179,7 @@ def _draw_hits(axis: Any, hits: pd.DataFrame, config: Config) -> None:
     axis.set_axis_off()
     axis.plot((-14, -4), (-49, -49), color="black", linewidth=1.0)
     axis.annotate("10 mm", (-9, -48.5), fontsize=7, ha="center", va="bottom")
-    axis.legend(loc="upper right", ncols=2)
+    axis.legend(loc="lower right", ncols=2)
     style.panel(axis, "a", "hits on six boards")
 
 

@@ -313,7 +313,7 @@ def _draw_task(recording: Recording) -> Any:
 def _draw_limits(metrics: Any) -> Any:
     from dexrepro.report import style
 
-    groups = {"as printed": "", "one sample late": "_late", "twice as stiff": "_stiff", "own gain": "_tuned"}
+    groups = {"as\nprinted": "", "one sample\nlate": "_late", "twice\nas stiff": "_stiff", "own\ngain": "_tuned"}
     figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
     for k, (law, role) in enumerate(LAWS.items()):
         values = [metrics.get(f"t1_{law}{ending}", {}).get("rmse") for ending in groups.values()]
@@ -324,7 +324,7 @@ def _draw_limits(metrics: Any) -> Any:
     axis.set_yscale("log")
     axis.set_ylabel("RMS force error [N]")
     axis.legend(ncols=3, loc="upper left", fontsize=6.5, handlelength=1.0, columnspacing=0.8)
-    axis.set_ylim(0.1, 60)
+    axis.set_ylim(0.1, 10)
     worse = metrics["t1_proposed_late"]["rmse"] > metrics["t1_passive_late"]["rmse"]
     style.title(figure, "One late sample " + ("undoes" if worse else "does not undo") + " the advantage")
     return figure

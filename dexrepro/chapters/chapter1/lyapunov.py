@@ -123,8 +123,8 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     frame = recordings["growth"].frames["growth"]
     for column, role in zip(frame.columns[1:], ("printed", "extra1", "rival", "extra3", "plain", "book")):
         right.semilogy(frame["time"], frame[column], label=f"L = {column}", **style.LINES[role])
-    right.set(xlabel="Time [s]", ylabel="Largest force error in 10 s [N]", ylim=(1e-3, 30))
-    right.legend(loc="lower left", ncols=2)
+    right.set(xlabel="Time [s]", ylabel="Largest force error in 10 s [N]", ylim=(1e-3, 1e3))
+    right.legend(loc="upper right", ncols=3)
     share = 100 * (metrics["built"]["rising"] or 0)
     style.title(
         figure, f"V falls at every step only if z_d is known; the law as built lets it rise {share:.0f} % of the time"

@@ -45,7 +45,7 @@ FIGURES = {
 TABLES = {"T1.E": "Potential field: adjustable weights and ablations"}
 RATE = 25.0
 SHAKEN, APPROACH, HOLD, PITCHED = 18.0, 24.0, 30.0, 38.0  # s, ends of the phases
-VIEW = Camera(target=(0.5, 0.0, 0.3), distance=1.25, yaw=75.0, pitch=-18.0)
+VIEW = Camera(target=(0.5, -0.06, 0.3), distance=1.45, yaw=75.0, pitch=-18.0)
 INSTANTS = {"a": 1.5, "b": 7.5, "c": 13.5, "d": 21.0, "e": 25.0, "f": 32.0, "g": 40.0}
 
 
