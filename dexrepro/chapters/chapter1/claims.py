@@ -351,8 +351,8 @@ CLAIMS = (
         "The proposed law beats a force controller and a passive impedance with tuned gains, at its own tuned gain.",
         every(_tracking("rmse", "proposed_tuned", "force_tuned"), _tracking("rmse", "proposed_tuned", "passive_tuned")),
         source="ours",
-        note="Twelve gains each (T1.H). Proposed law and force controller take the same gain, the largest tried, and tie "
-        "within 0.3 % over the whole run; after 5 s the proposed law is better.",
+        note="Twelve gains each (T1.H). Proposed law and force controller take the same gain, the largest tried, and "
+        "tie within 0.3 % over the whole run; after 5 s the proposed law is better.",
     ),
     Claim(
         "C1.31",
