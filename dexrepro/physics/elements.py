@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from dexrepro.physics.plant import Point, SimulatedArm
+from dexrepro.physics.plant import Point, RigidBody, SimulatedArm
 
 Place = str | Sequence[float]
 Force = Sequence[float] | NDArray[np.float64]
@@ -168,6 +168,28 @@ class Push:
 
     def channels(self) -> dict[str, float]:
         return dict(zip("xyz", self.force, strict=True))
+
+
+class Carried:
+    """A static body that is carried along a path: ``path``(time) -> position (x, y, z) [m]. Channels: x, y, z [m]."""
+
+    def __init__(self, body: str, path: Callable[[float], Force]) -> None:
+        self.name, self._path, self.position = body, path, (0.0, 0.0, 0.0)
+
+    def bind(self, world: Ends) -> Callable[[float], None]:
+        body, path = world.end(self.name), self._path
+        if not isinstance(body, RigidBody) or body.mass > 0:
+            raise ValueError(f"'{self.name}' is not a static body, so it cannot be carried")
+
+        def apply(time: float) -> None:
+            x, y, z = path(time)
+            self.position = float(x), float(y), float(z)
+            body.place(self.position)
+
+        return apply
+
+    def channels(self) -> dict[str, float]:
+        return dict(zip("xyz", self.position, strict=True))
 
 
 class JointLoad:

@@ -48,6 +48,11 @@ class RigidBody(Point):
         )
         (self.vx, self.vy, self.vz), self.spin = bullet.getBaseVelocity(self.body, physicsClientId=self.client)
 
+    def place(self, position: tuple[float, float, float]) -> None:
+        """Put the body somewhere else [m], its orientation kept."""
+        self.x, self.y, self.z = position
+        bullet.resetBasePositionAndOrientation(self.body, position, self.orientation, physicsClientId=self.client)
+
     def push(self, fx: float, fy: float, fz: float) -> None:
         bullet.applyExternalForce(
             self.body, -1, (fx, fy, fz), (self.x, self.y, self.z), bullet.WORLD_FRAME, physicsClientId=self.client

@@ -23,6 +23,54 @@ class Camera:
     field_of_view: float = 50.0
 
 
+@dataclass(frozen=True)
+class Overhead:
+    """A depth camera that looks straight down from a place (3,) [m]; image right is +x, image up is +y.
+
+    size: (width, height) in pixels; field_of_view: vertical, degrees; near, far: range [m].
+    """
+
+    position: tuple[float, float, float]
+    size: tuple[int, int] = (160, 160)
+    field_of_view: float = 36.0
+    near: float = 0.2
+    far: float = 2.0
+
+    @property
+    def focal(self) -> float:
+        """Focal length in pixels."""
+        return self.size[1] / 2 / float(np.tan(np.radians(self.field_of_view) / 2))
+
+    def project(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Pixel coordinates (..., 2), column and row, of points (..., 3) [m]; pixel centres are whole numbers."""
+        x, y, z = np.moveaxis(np.asarray(points) - self.position, -1, 0)
+        scale = self.focal / -z
+        return np.stack((self.size[0] / 2 - 0.5 + scale * x, self.size[1] / 2 - 0.5 - scale * y), axis=-1)
+
+    def place(self, column: float, row: float, height: float) -> tuple[float, float]:
+        """Where (x, y) [m] the ray through a pixel meets a height z [m]."""
+        scale = (self.position[2] - height) / self.focal
+        x = self.position[0] + (column - self.size[0] / 2 + 0.5) * scale
+        return x, self.position[1] - (row - self.size[1] / 2 + 0.5) * scale
+
+
+def look_down(client: int, camera: Overhead) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+    """Colours (height, width, 3) and heights z (height, width) [m] that an overhead camera sees, free of noise."""
+    (x, y, z), (width, height) = camera.position, camera.size
+    view = bullet.computeViewMatrix((x, y, z), (x, y, z - 1.0), (0.0, 1.0, 0.0), physicsClientId=client)
+    lens = bullet.computeProjectionMatrixFOV(
+        camera.field_of_view, width / height, camera.near, camera.far, physicsClientId=client
+    )
+    answer = bullet.getCameraImage(
+        width, height, view, lens, shadow=0, lightDirection=(0.3, -0.3, 1.0), renderer=bullet.ER_TINY_RENDERER,
+        physicsClientId=client,
+    )  # fmt: skip
+    colours = np.asarray(answer[2], dtype=np.uint8).reshape(height, width, -1)[:, :, :3].copy()
+    buffer = np.asarray(answer[3], dtype=float).reshape(height, width)
+    depth = camera.far * camera.near / (camera.far - (camera.far - camera.near) * buffer)
+    return colours, z - depth
+
+
 def photograph(client: int, camera: Camera, size: tuple[int, int]) -> NDArray[np.uint8]:
     """Picture of shape (height, width, 3) for a size (width, height), by PyBullet's software renderer."""
     width, height = size

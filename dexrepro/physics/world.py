@@ -14,7 +14,7 @@ from dexrepro.physics import loop
 from dexrepro.physics.elements import Element, Place
 from dexrepro.physics.loading import connect, undamped
 from dexrepro.physics.plant import Controller, Point, RigidBody, SimulatedArm, Touch, touches
-from dexrepro.physics.rendering import Camera, photograph
+from dexrepro.physics.rendering import Camera, Overhead, look_down, photograph
 from dexrepro.physics.sensor import Sensor
 from dexrepro.robots.arm import GREY, Arm, Colour, Pose, Shape
 
@@ -294,6 +294,22 @@ class World:
         bullet.restoreState(stateId=state, physicsClientId=self.client)
         bullet.removeState(state, physicsClientId=self.client)
         return image
+
+    def look_down(self, camera: Overhead) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+        """Colours (height, width, 3) and heights z (height, width) [m] that an overhead camera sees, free of noise."""
+        return look_down(self.client, camera)
+
+    def grip(self, arm: str, body: str) -> None:
+        """Fix a body to an arm's end point as it lies there now, as closed fingers would; it still touches the rest."""
+        plant, held = self.arm(arm), self.bodies[body]
+        state = bullet.getLinkState(plant.body, plant.end.link, 0, 1, physicsClientId=self.client)
+        held.read()
+        to_link = bullet.invertTransform(state[0], state[1])
+        place, turn = bullet.multiplyTransforms(*to_link, (held.x, held.y, held.z), held.orientation)
+        bullet.createConstraint(
+            plant.body, plant.end.link, held.body, -1, bullet.JOINT_FIXED, (0, 0, 0), place, (0, 0, 0), turn,
+            physicsClientId=self.client,
+        )  # fmt: skip
 
     def _touches(self, first: str, second: str | None) -> list[Touch]:
         found = touches(self.client, self._body(first))

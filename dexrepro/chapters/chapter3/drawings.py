@@ -1,0 +1,121 @@
+"""Pictures of the arm at the opening that several experiments share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dexrepro.chapters.chapter3.scene import ARM, centreline, gripper_arm
+from dexrepro.control.remote_centre import closest_point, tilt, tool_axis
+from dexrepro.experiment import Config, Recording
+from dexrepro.robots.kinematics import forward
+
+
+def describe(config: Config) -> str:
+    """One case in a few words."""
+    parts = [f"{config.task} task", f"mass error {100 * config.model.mass_error:g} %"]
+    if config.straight:
+        parts.append("straight to the target")
+    parts.append(f"K_R {config.null_space.stiffness:g} N/m" if config.null_space.enabled else "no null-space torque")
+    parts.append("no network" if config.law.network is None else f"weights by {config.adaptation} e2")
+    return ", ".join(parts)
+
+
+def picture(image: Any, finding: str) -> Any:
+    """One rendered view."""
+    from dexrepro.report import style
+
+    figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.7)
+    axes.imshow(image)
+    axes.set_axis_off()
+    style.title(figure, finding)
+    return figure
+
+
+def pictures(images: dict[str, Any], finding: str) -> Any:
+    """Rendered views side by side, each with its label."""
+    from dexrepro.report import style
+
+    figure, grid = style.subplots(1, len(images), height=2.9)
+    for axes, (label, image) in zip(grid, images.items()):
+        axes.imshow(image)
+        axes.set_axis_off()
+        axes.set_title(label)
+    style.title(figure, finding)
+    return figure
+
+
+def steps(recording: Recording, config: Config) -> Any:
+    """The four instants of Fig. 3.6."""
+    from dexrepro.report import style
+
+    approach, insertion, _ = config.phases
+    labels = {
+        "start": "(a) 0 s, start",
+        "centre": f"(b) {approach:g} s, at the opening",
+        "half": f"(c) {approach + insertion / 2:g} s, half-way",
+        "target": f"(d) {sum(config.phases):g} s, at the target",
+    }
+    figure, grid = style.subplots(2, 2, height=5.3)
+    for axes, (name, label) in zip(grid.flat, labels.items()):
+        axes.imshow(recording.images[name])
+        axes.set_axis_off()
+        axes.set_title(label)
+    style.title(figure, "The gripper enters through the opening and reaches the cube")
+    return figure
+
+
+def orientation(recording: Recording, config: Config) -> Any:
+    """Fig. 3.2 from a recorded instant half-way to the opening."""
+    from dexrepro.report import style
+
+    index = int(np.abs(recording.time - config.phases[0] / 2).argmin())
+    tip, rotation = forward(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])
+    centre, target = np.array(config.centre), np.array(config.target)
+    wanted = tool_axis(centre, centre, target, config.lever)
+    figure, axes = _space(style)
+    length = 0.22
+    axes.plot(*np.stack((tip - length * rotation[:, 2], tip)).T, label="actual tool axis", **style.LINES["book"])
+    axes.plot(*np.stack((tip - length * wanted, tip)).T, label="final desired axis", **style.LINES["reference"])
+    axes.plot(*np.stack((centre, target)).T, color=style.PLAIN, linewidth=0.8, label="opening to target")
+    _mark(axes, {"$P_R$": centre, "$X_D$": target, "$X_P$": tip})
+    angle = float(np.degrees(np.linalg.norm(tilt(wanted, rotation[:, 2]))))
+    axes.legend(loc="upper left")
+    style.title(figure, f"Half-way to the opening {angle:.0f}° of the turn remain")
+    return figure
+
+
+def shortest_distance(recording: Recording, config: Config) -> Any:
+    """Fig. 3.3 from a recorded instant half-way to the target."""
+    from dexrepro.report import style
+
+    time = config.phases[0] + config.phases[1] / 2
+    index = int(np.abs(recording.time - time).argmin())
+    corners = centreline(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])
+    centre = np.array(config.centre)
+    _, foot = closest_point(centre, list(corners))
+    figure, axes = _space(style)
+    axes.plot(*corners.T, color=style.BOOK, linewidth=2.5, label="forearm and tool")
+    axes.plot(*np.stack((centre, foot)).T, color=style.PRINTED, label="$Dis_R$")
+    _mark(axes, {"elbow": corners[0], "$P_{EA}$": corners[1], "$P_E$": corners[2], "$P_R$": centre})
+    axes.legend(loc="upper left")
+    distance = 1e3 * float(np.linalg.norm(centre - foot))
+    style.title(figure, f"With a free tool axis the arm passes {distance:.0f} mm beside the centre")
+    return figure
+
+
+def _space(style: Any) -> tuple[Any, Any]:
+    figure, axes = style.subplots(width=style.TWO_COLUMNS * 0.7, height=3.6, subplot_kw={"projection": "3d"})
+    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+    axes.view_init(elev=18, azim=-60)
+    axes.locator_params(nbins=4)
+    axes.set_box_aspect(None, zoom=0.72)
+    return figure, axes
+
+
+def _mark(axes: Any, points: dict[str, Any]) -> None:
+    for name, point in points.items():
+        axes.scatter(*point, color="#222222", s=12)
+        axes.text(*(np.asarray(point) + 0.012), name, fontsize=8)
+    axes.set_aspect("equal")

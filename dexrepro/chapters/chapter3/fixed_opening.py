@@ -1,0 +1,196 @@
+"""Four reaches through a fixed opening, with and without what keeps the arm near its centre (Sect. 3.5.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter3 import drawings, reach
+from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
+from dexrepro.chapters.chapter3.scene import CAMERA, Touching, build
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+
+_REACH = (
+    "Distance of the end point to the target and shortest distance Dis_R of the arm to the remote centre in reach "
+    "{} (the book plots the default alone). Simulated: Baxter's right arm with a 0.15 m gripper, nominal model 10 % "
+    "too light, box and lid as collision bodies. Position-only tasks pass through the lid untouched, so that laws are "
+    "compared and not their collisions. The book's time axes are not printed."
+)
+FIGURES = {
+    "3.2": Figure(
+        "Tool axis on the way to the opening in reach 1 (simulated): actual axis, desired axis, the angle "
+        "omega between "
+        "them, remote centre and end point. The book shows a sketch.",
+        "The tool axis turns towards the line from the opening to the target.",
+    ),
+    "3.3": Figure(
+        "Elbow, wrist, end point, remote centre and the shortest distance Dis_R, half-way to the target in "
+        "reach 1 with "
+        "the position-only task (simulated). The book shows a sketch.",
+        "The shortest distance runs from the opening's centre to the foot point on the arm.",
+    ),
+    "3.4": Figure(
+        "The simulated workspace: box of 0.5 m x 0.37 m x 0.3 m, lid with a square hole, cube at the target of "
+        "reach 1. "
+        "The book shows a photograph.",
+        "A box with a hole in its lid in front of the robot's right arm.",
+    ),
+    "3.6": Figure(
+        "Four instants of reach 1 (simulated): start, end point at the remote centre, half-way, at the target. "
+        "The book "
+        "shows photographs of the same steps.",
+        "The gripper descends to the opening and passes it to the cube inside the box.",
+    ),
+    **{
+        f"3.{6 + n}": Figure(_REACH.format(n), f"Reach {n}: the end point arrives while the arm stays at the opening.")
+        for n in (1, 2, 3, 4)
+    },
+}
+TABLES = {
+    "T3.A": "Fixed opening: every law and model, four reaches",
+    "T3.S": "Sensitivity: variants of unprinted values and of the reading, and what becomes of the claims",
+}
+RATE = 50.0
+REACHES = (1, 2, 3, 4)
+
+scene = build
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    centre = np.array(config.centre, dtype=float)
+    with build(config) as world:
+        recording = reach.run(world, config, lambda _: centre, Touching(world))
+        if config.pictures:
+            approach, insertion, _ = config.phases
+            instants = {
+                "start": 0.0,
+                "centre": approach,
+                "half": approach + insertion / 2,
+                "target": sum(config.phases),
+            }
+            recording.images = {name: world.snapshot(recording, time, CAMERA) for name, time in instants.items()}
+    add_distances(recording, config, centre)
+    return recording
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    return reach_metrics(recording, config)
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """Over the reaches: the worst of the default, and how much larger Dis_R is without the null-space torque."""
+
+    def values(prefix: str, metric: str) -> list[float]:
+        cases = [metrics.get(f"{prefix}{n}", {}).get(metric) for n in REACHES]
+        return [float(value) for value in cases if value is not None]
+
+    result: Metrics = {}
+    for name, (without, with_torque) in {"default": ("free", "reach"), "position": ("posfree", "pos")}.items():
+        pairs = zip(values(without, "rcm_distance_final"), values(with_torque, "rcm_distance_final"))
+        ratios = [(a + FLOOR) / (b + FLOOR) for a, b in pairs]
+        result[f"{name}_ratio"] = min(ratios) if ratios else None
+        result[f"{name}_ratio_mean"] = float(np.mean(ratios)) if ratios else None
+    for metric in ("final_position_error", "rcm_distance_max"):
+        found = values("reach", metric)
+        result[f"worst_{metric}"] = max(found) if found else None
+    return result
+
+
+FLOOR = 1e-4  # m, what counts as no distance at all where distances are divided
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    figures: dict[str, Any] = {}
+    for n in REACHES:
+        if f"reach{n}" in recordings:
+            figures[f"3.{6 + n}"] = _draw_reach(n, recordings, metrics, config)
+    first = recordings.get("reach1")
+    if first is not None and first.images:
+        figures["3.4"] = drawings.picture(first.images["start"], "A box entered through its lid")
+        figures["3.6"] = drawings.steps(first, config.cases["reach1"])
+    if first is not None:
+        figures["3.2"] = drawings.orientation(first, config.cases["reach1"])
+    if "pos1" in recordings:
+        figures["3.3"] = drawings.shortest_distance(recordings["pos1"], config.cases["pos1"])
+    return figures
+
+
+CURVES = {
+    "reach": ("whole method", "book"),
+    "free": ("without null-space torque", "extra2"),
+    "pos": ("position-only task", "rival"),
+    "posfree": ("position-only, without torque", "plain"),
+}
+
+
+def _draw_reach(n: int, recordings: Any, metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, (left, right) = style.subplots(1, 2, height=2.3)
+    for prefix, (label, line) in CURVES.items():
+        recording = recordings.get(f"{prefix}{n}")
+        if recording is not None:
+            left.plot(recording.time, np.maximum(recording["error"], 1e-6), label=label, **style.LINES[line])
+            right.plot(recording.time, 1e3 * recording["rcm_distance"], label=label, **style.LINES[line])
+    approach, insertion, _ = config.cases[f"reach{n}"].phases
+    for axes in (left, right):
+        for time, word in ((approach, "at $P_R$"), (approach + insertion, "at $X_D$")):
+            axes.axvline(time, color="#444444", linewidth=0.6)
+            axes.annotate(word, (time, 0.02), xycoords=("data", "axes fraction"), rotation=90, fontsize=6.5, ha="right")
+        axes.set_xlabel("Time [s]")
+    left.set(yscale="log", ylabel=r"Distance to target $\|\tilde X\|$ [m]", ylim=(1e-6, 2))
+    right.set(ylabel="Distance to centre $Dis_R$ [mm]", ylim=(0, 250))
+    right.legend(loc="upper center", bbox_to_anchor=(0.45, 1.02), framealpha=1, frameon=True, edgecolor="none")
+    found = metrics[f"reach{n}"]
+    final, far = 1e6 * found["final_position_error"], 1e3 * found["rcm_distance_max"]
+    style.title(figure, f"Reach {n} ends {final:.0f} µm from its target and stays within {far:.2f} mm of the centre")
+    return figure
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
+) -> dict[str, pd.DataFrame]:
+    rows = [
+        {"case": case, "reading": drawings.describe(config.cases[case]), **values}
+        for case, values in metrics.items()
+        if case in config.cases
+    ]
+    return {"T3.A": pd.DataFrame(rows), "T3.S": _sensitivity(metrics)}
+
+
+# Variant, what differs, claim, metric, bound that the claim puts on it [m] and the case it departs from.
+VARIANTS = (
+    ("flange2", "no gripper, reach 2", "C3.01", "final_position_error", 0.002, "reach2"),
+    ("flange3", "no gripper, reach 3", "C3.01", "final_position_error", 0.002, "reach3"),
+    ("flange3", "no gripper, reach 3", "C3.02", "rcm_distance_max", 0.01, "reach3"),
+    ("medium1", "gripper 0.125 m, reach 1", "C3.02", "rcm_distance_max", 0.01, "reach1"),
+    ("short1", "gripper 0.075 m, reach 1", "C3.02", "rcm_distance_max", 0.01, "reach1"),
+    ("short3", "gripper 0.075 m, reach 3", "C3.02", "rcm_distance_max", 0.01, "reach3"),
+    ("stronger3", "gripper 0.075 m, K_R 10000 N/m, held 5 s, reach 3", "C3.02", "rcm_distance_final", 0.01, "short3"),
+    ("pose1", "six-dimensional task (3.21), reach 1", "C3.02", "rcm_distance_max", 0.01, "reach1"),
+    ("joint1", "q_d integrated in joint space, reach 1", "C3.02", "rcm_distance_max", 0.01, "reach1"),
+    ("exact1", "exact model, reach 1", "C3.02", "rcm_distance_max", 0.01, "reach1"),
+    ("exact4", "exact model, reach 4", "C3.02", "rcm_distance_max", 0.01, "reach4"),
+    ("task4", "weights driven by the task part of e2, reach 4", "C3.02", "rcm_distance_max", 0.01, "reach4"),
+    ("pos1", "position-only task, reach 1", "C3.02", "rcm_distance_max", 0.01, "reach1"),
+    ("narrow1", "hole of 0.18 m instead of 0.20 m, reach 1", "C3.06", "contact_time", 0.001, "reach1"),
+    ("weightless1", "no gravity compensation, reach 1", "C3.06", "contact_time", 0.001, "reach1"),
+    ("weightless1", "no gravity compensation, reach 1", "C3.01", "final_position_error", 0.002, "reach1"),
+    ("slow2", "5 s instead of 2.5 s to the opening, reach 2", "joint speed", "joint_speed_max", 4.0, "reach2"),
+)
+
+
+def _sensitivity(metrics: Mapping[str, Metrics]) -> pd.DataFrame:
+    rows = []
+    for case, what, claim, metric, bound, base in VARIANTS:
+        value, before = metrics.get(case, {}).get(metric), metrics.get(base, {}).get(metric)
+        if case in metrics and base in metrics:
+            holds, held = (x is not None and x < bound for x in (value, before))
+            rows.append(
+                {"variant": what, "claim": claim, "metric": metric, "bound": bound, "default": before, "value": value,
+                 "holds": holds, "flips": holds != held}
+            )  # fmt: skip
+    return pd.DataFrame(rows)

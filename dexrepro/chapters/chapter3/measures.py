@@ -1,0 +1,52 @@
+"""Numbers read off a reach through the opening."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dexrepro.chapters.chapter3.scene import ARM, distance_to_centre, gripper_arm
+from dexrepro.experiment import Config, Metrics, Recording
+
+Array = NDArray[np.float64]
+
+
+def add_distances(recording: Recording, config: Config, centres: Array) -> None:
+    """Add what the book plots: ``error``, the distance of the tip to the target, and ``rcm_distance``, Dis_R [m]."""
+    recording.series["error"] = np.linalg.norm(recording[f"{ARM}.tip"] - np.array(config.target), axis=1)
+    positions = recording[f"{ARM}.position"]
+    recording.series["rcm_distance"] = distance_to_centre(gripper_arm(config.gripper), positions, centres)
+
+
+def reach_metrics(recording: Recording, config: Config) -> Metrics:
+    """Errors and distances [m] of one run; "inside" is everything after the tip has reached the opening."""
+    arm, positions = gripper_arm(config.gripper), recording[f"{ARM}.position"]
+    inside = recording.between(config.phases[0])
+    distance, contact = recording["rcm_distance"], recording["contact"]
+    finished = recording.status == "finished" and bool(inside.any())
+    return {
+        "final_position_error": last(recording["error"]) if finished else None,
+        "tracking_error_max": float(recording["tracking"].max()),
+        "tracking_error_inside": rms(recording["tracking"][inside]) if finished else None,
+        "rcm_distance_max": float(distance[inside].max()) if finished else None,
+        "rcm_distance_mean": float(distance[inside].mean()) if finished else None,
+        "rcm_distance_final": last(distance) if finished else None,
+        "contact_time": float((contact[:, 0] > 0).sum() * config.step),
+        "contact_force_max": float(contact[:, 1].max()),
+        "clearance": float(contact[:, 2].min()),
+        "node_count": int(recording["nodes"][-1]),
+        "joint_speed_max": float(np.abs(recording[f"{ARM}.velocity"]).max()),
+        "limit_margin": float(min((positions - arm.lower).min(), (arm.upper - positions).min())),
+        "finished": int(finished),
+    }
+
+
+def last(values: Array, samples: int = 100) -> float:
+    """Mean of the last samples."""
+    return float(values[-samples:].mean())
+
+
+def rms(values: Any) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))

@@ -1,0 +1,220 @@
+"""The arm's controller: fixed-time law for the reach, remote-centre torque in its null space, momentum observer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dexrepro.chapters.chapter3.scene import ARM, ELBOW, WRIST, gripper_arm
+from dexrepro.control.null_space import consistent_inverse, damped_inverse
+from dexrepro.control.remote_centre import (
+    centre_force,
+    closest_point,
+    cross,
+    printed_centre_force,
+    rotation_matrix,
+    tilt,
+    tool_axis,
+)
+from dexrepro.experiment import Config, Recording
+from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.world import World
+from dexrepro.robots.arm import Arm
+from dexrepro.robots.kinematics import joint_frames
+
+Array = NDArray[np.float64]
+BEYOND = 1.6  # a retreat's length over that of the insertion
+CARRIERS = (5, 6)  # number of joints that move the segments e1-w1 and w1-tip (turning w2 leaves its axis in place)
+
+
+class Reference:
+    """Where the tool's end point and axis should be: start -> remote centre -> target -> hold (Sect. 3.5.2).
+
+    Straight lines with the quintic law s = 10 u^3 - 15 u^4 + 6 u^5. On the way to the centre the axis turns from its
+    first direction to the one that it has inside, then it passes through the centre. A fourth phase, if there is one,
+    goes back through the centre and beyond it.
+    """
+
+    def __init__(self, config: Config, tip: Array, axis: Array, centre: Array) -> None:
+        self.start, self.centre, self.target = tip, centre, np.array(config.target, dtype=float)
+        self.approach, self.insertion, hold, *retreat = config.phases
+        self._leave, self._retreat = self.approach + self.insertion + hold, retreat[0] if retreat else 0.0
+        self._lever = config.lever
+        self._straight = config.straight
+        self._axis = axis
+        self._turn = -tilt(tool_axis(centre, centre, self.target, self._lever), axis)
+
+    def __call__(self, time: float, centre: Array) -> tuple[Array, Array, Array, Array]:
+        """Position [m], velocity [m/s], tool axis and its angular velocity [rad/s], (3,) each."""
+        if self._straight:
+            share, rate = quintic(time, self.approach + self.insertion)
+            way = self.target - self.start
+            return self.start + share * way, rate * way, self._axis, np.zeros(3)
+        if time < self.approach:
+            share, rate = quintic(time, self.approach)
+            way = self.centre - self.start
+            axis = rotation_matrix(share * self._turn) @ self._axis
+            return self.start + share * way, rate * way, axis, rate * self._turn
+        share, rate = quintic(time - self.approach, self.insertion)
+        if self._retreat and time > self._leave:
+            back, rate = quintic(time - self._leave, self._retreat)
+            share, rate = 1.0 - BEYOND * back, -BEYOND * rate
+        way = self.target - self.centre
+        position = self.centre + share * way
+        return position, rate * way, tool_axis(position, centre, self.target, self._lever), np.zeros(3)
+
+
+class State:
+    """Pose, centreline and Jacobians of one joint state, from the arm's geometry alone."""
+
+    def __init__(self, arm: Arm, q: Array) -> None:
+        frames = joint_frames(arm, q)
+        tip = frames[-1] @ arm.tip
+        self.tip, self.rotation = tip[:3, 3], tip[:3, :3]
+        self.origins = frames[:, :3, 3]
+        self.axes = frames[:, :3, 2]  # every joint of the arm turns about the z axis of its link
+        self.corners = (self.origins[ELBOW], self.origins[WRIST], self.tip)
+
+    def jacobian(self, point: Array, joints: int) -> Array:
+        """Linear Jacobian (3, n) of a point that the first ``joints`` joints move."""
+        result = np.zeros((3, len(self.axes)))
+        levers = point - self.origins[:joints]
+        x, y, z = self.axes[:joints].T
+        u, v, w = levers.T
+        result[0, :joints] = y * w - z * v
+        result[1, :joints] = z * u - x * w
+        result[2, :joints] = x * v - y * u
+        return result
+
+
+class Reach:
+    """From what the arm measures of itself and the camera's two points to joint torques; nothing else is known.
+
+    The nominal model, wrong by ``config.model.mass_error``, serves gravity compensation, projector and observer.
+    centre: P_R(t) as the camera sees it. applied: the torque that the motors report [N m].
+    distance, observed, reference, force: of the last call, for recording.
+    """
+
+    def __init__(self, config: Config, centre: Callable[[float], Array], applied: Callable[[], Any]) -> None:
+        self.arm = gripper_arm(config.gripper)
+        self.model = RigidBodyModel(self.arm, mass_error=config.model.mass_error)
+        self.config, self.law, self.observer = config, config.law, config.observer
+        self._centre, self._applied = centre, applied
+        self._reference: Reference | None = None
+        self._joints: Array | None = None
+        self.tracking = 0.0
+        self.observed = np.zeros(7)
+        self.nodes = 0
+
+    def __call__(self, sense: Any) -> tuple[Array, Array]:
+        config, q, dq = self.config, sense.position, sense.velocity
+        centre, state = self._centre(sense.time), State(self.arm, q)
+        mass, bias, gravity = self.model.mass_matrix(q), self.model.bias(q, dq), self.model.gravity(q)
+        self.observed = self.observer(mass, dq, bias, np.array(self._applied()))
+        if self._reference is None:
+            self._reference = Reference(config, state.tip, state.rotation[:, 2], centre)
+        wanted = self._reference(sense.time, centre)
+        self.tracking = math.dist(state.tip, wanted[0])
+        error, jacobian, rate = self._task(state, wanted)
+        inverse, projector = consistent_inverse(mass, jacobian)
+        if config.reference == "joint":
+            e1, desired = self._joint_error(q, wanted)
+        else:
+            back = inverse if config.task == "position" else damped_inverse(jacobian, config.damping)
+            e1, desired = back @ error, back @ rate
+        torque, damping = self.law(e1, q, dq, desired)
+        self.law.adapt(inverse @ (jacobian @ self.law.error) if config.adaptation == "task" else None)
+        if self.law.network is not None:
+            self.nodes = self.law.network.basis.nodes
+        torque += config.model.gravity_compensation * gravity
+        if config.null_space.enabled:
+            torque += projector @ self._subtask(state, centre)
+        return torque, damping
+
+    def _task(self, state: State, wanted: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array]:
+        """Task error xi (m,), Jacobian (m, n) and desired rate (m,)."""
+        position, velocity, axis, spin = wanted
+        linear = state.jacobian(state.tip, 7)
+        offset = state.tip - position
+        if self.config.task == "position":
+            return offset, linear, velocity
+        turn = tilt(axis, state.rotation[:, 2])
+        if self.config.task == "pose":
+            # Roll is that of the actual orientation, Eq. (3.21): its error is zero by definition.
+            sign = -1.0 if self.config.printed_axis else 1.0
+            rows = np.eye(3)
+        else:
+            sign, rows = 1.0, state.rotation.T[:2]
+        error = np.concatenate((offset, sign * (rows @ turn)))
+        if self.config.task == "roll":
+            rows = np.vstack((rows, axis))
+            error = np.append(error, self._roll_error(state.rotation, axis))
+        jacobian = np.concatenate((linear, rows @ state.axes.T))
+        return error, jacobian, np.concatenate((velocity, rows @ spin))
+
+    def _roll_error(self, rotation: Array, axis: Array) -> float:
+        """Angle about the tool's axis from the direction in which the fingers should close to theirs [rad].
+
+        Fingers have no sides: the nearer of the two directions counts. It is bounded, so that the wrist turns slowly.
+        """
+        wanted = np.array((math.cos(self.config.roll), math.sin(self.config.roll), 0.0))
+        side = cross(axis, rotation[:, 0])
+        angle = math.atan2(float(wanted @ side), float(wanted @ rotation[:, 0]))
+        turn = -((angle + math.pi / 2) % math.pi - math.pi / 2)
+        return min(max(turn, -0.1), 0.1)
+
+    def _joint_error(self, q: Array, wanted: tuple[Array, Array, Array, Array]) -> tuple[Array, Array]:
+        """e1 = q - q_d and dq_d, with q_d from closed-loop inverse kinematics."""
+        if self._joints is None:
+            self._joints = q.copy()
+        error, jacobian, rate = self._task(State(self.arm, self._joints), wanted)
+        desired = damped_inverse(jacobian, self.config.damping) @ (rate - 20.0 * error)
+        self._joints = self._joints + self.config.step * desired
+        return q - self._joints, desired
+
+    def _subtask(self, state: State, centre: Array) -> Array:
+        """tau_sub (n,) [N m], Eq. (3.30): pull the nearest point of the arm to the centre, take out what pushes it."""
+        null = self.config.null_space
+        segment, point = closest_point(centre, state.corners)
+        joints = CARRIERS[segment]
+        if null.force == "printed":
+            force = printed_centre_force(centre, state.tip, state.corners[1], null.stiffness)
+        else:
+            force = centre_force(centre, point, null.stiffness)
+        jacobian = state.jacobian(point, joints)
+        if null.jacobian == "last3":
+            jacobian[:, :4] = 0.0
+        torque = force @ jacobian
+        return torque - self.observed if null.compensate else torque
+
+
+def quintic(time: float, duration: float) -> tuple[float, float]:
+    """Minimum-jerk share s and its rate [1/s] at a time [s]."""
+    u = min(max(time / duration, 0.0), 1.0)
+    return u**3 * (10 - 15 * u + 6 * u * u), 30 * u * u * (1 - u) ** 2 / duration
+
+
+def run(
+    world: World,
+    config: Config,
+    centre: Callable[[float], Array],
+    touching: Callable[[], Any],
+    events: Sequence[tuple[float, Callable[[], Any]]] = (),
+) -> Recording:
+    """Run a scene; adds ``tracking`` [m], ``observed`` [N m], ``contact`` and ``nodes`` to the World's channels."""
+    plant = world.arm(ARM)
+    reach = Reach(config, centre, lambda: plant.torque)
+    probes = {
+        "tracking": lambda: reach.tracking,
+        "observed": lambda: reach.observed,
+        "nodes": lambda: reach.nodes,
+        "contact": touching,
+    }
+    try:
+        return world.run(sum(config.phases), {ARM: reach}, probes=probes, events=events, on_divergence="stop")
+    finally:
+        reach.model.close()

@@ -1,0 +1,123 @@
+"""Fixed-time backstepping: errors vanish within a time that does not depend on how large they were (Sect. 3.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+TINY = 1e-9  # error below which the secant slope of the root is no longer increased
+
+
+class Network(Protocol):
+    """A function approximator that learns while it controls, such as networks.AdaptiveNetwork."""
+
+    def output(self, z: Array, grow: bool = False) -> Array: ...
+
+    def adapt(self, error: Array) -> None: ...
+
+    def reset(self) -> None: ...
+
+
+def signed_power(x: Any, power: float) -> Any:
+    """SIG^r(x), element by element: |x_i|^r sign(x_i), Eq. (3.12) without its square root."""
+    return np.sign(x) * np.abs(x) ** power
+
+
+def secant(x: Array, gains: Sequence[float], alpha: float, beta: float) -> Array:
+    """Slope k with k x = k1 x + k2 SIG^alpha(x) + k3 SIG^beta(x), shape of x."""
+    size = np.maximum(np.abs(x), TINY)
+    result: Array = gains[0] + gains[1] * size ** (alpha - 1.0) + gains[2] * size ** (beta - 1.0)
+    return result
+
+
+class FixedTimeBackstepping:
+    """Torque that drives a joint error to zero in fixed time, Eqs. (3.24)-(3.28), with what the dynamics need learnt.
+
+    x_2d = -K11 e1 - K12 SIG^a(e1) - K13 SIG^b(e1) + dq_d and e2 = dq - x_2d give
+    tau = -e1 - K21 e2 - K22 SIG^a(e2) - K23 SIG^b(e2) - W^T S(z), z = [q, dq, x_2d, dx_2d/dt].
+
+    first: K11, K12, K13; second: K21, K22, K23; powers: alpha < 1 < beta. network: W^T S, or None for none.
+    smoothing: time constant [s] of the filter on the numerical derivative of x_2d (the exact one is unbounded where
+    an error changes sign). printed: keep the + e2 inside x_2d, Eq. (3.25) as printed, solved for e2. dt: period [s].
+    The terms in e2 are returned as torque and damping, so that they can be applied implicitly.
+    """
+
+    def __init__(
+        self,
+        *,
+        first: Sequence[float],
+        second: Sequence[float],
+        powers: Sequence[float],
+        dt: float,
+        smoothing: float = 0.005,
+        network: Network | None = None,
+        printed: bool = False,
+    ) -> None:
+        self.first, self.second, self.powers = tuple(first), tuple(second), tuple(powers)
+        self.dt, self.network, self._share = dt, network, (0.5 if printed else 1.0)
+        self._smoothing = (dt / smoothing) / (1.0 + dt / smoothing)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the past: the filtered derivative and the weights."""
+        self.virtual: Array | None = None
+        self.rate: Any = 0.0
+        self.error = np.zeros(0)
+        if self.network is not None:
+            self.network.reset()
+
+    def __call__(self, error: Array, position: Array, velocity: Array, desired: Array) -> tuple[Array, Array]:
+        """Torque [N m] and damping [N m s/rad], (n,) each.
+
+        error: e1 [rad]; position, velocity: measured q, dq [rad, rad/s]; desired: dq_d [rad/s]. ``error`` of the law,
+        e2 [rad/s], and its reference ``virtual``, x_2d, can be read afterwards; call :meth:`adapt` to learn from e2.
+        """
+        goal = desired - secant(error, self.first, *self.powers) * error
+        second = self._share * (velocity - goal)
+        virtual = velocity - second
+        if self.virtual is None:
+            self.rate = np.zeros_like(virtual)
+        else:
+            self.rate += self._smoothing * ((virtual - self.virtual) / self.dt - self.rate)
+        self.virtual, self.error = virtual, second
+        damping = self._share * secant(second, self.second, *self.powers)
+        torque: Array = damping * goal - error
+        if self.network is not None:
+            torque -= self.network.output(np.concatenate((position, velocity, virtual, self.rate)), grow=True)
+        return torque, damping
+
+    def adapt(self, error: Array | None = None) -> None:
+        """One step of the weight law, Eq. (3.28), driven by e2 or by what of it is given, (n,) [rad/s]."""
+        if self.network is not None:
+            self.network.adapt(self.error if error is None else error)
+
+
+def settling_bound(
+    first: Sequence[float],
+    second: Sequence[float],
+    powers: Sequence[float],
+    *,
+    inertia: float,
+    joints: int,
+    share: float = 1.0,
+    printed: bool = False,
+) -> float:
+    """T_max [s] of Lemma 3.2 for the error system, which no initial error exceeds.
+
+    inertia: largest eigenvalue of M [kg m^2]; share: gamma in (0, 1], how much of the decay is asked for. The
+    constants kappa follow from V' = e1^T e1 / 2 + e2^T M e2 / 2 and Eq. (3.40); ``printed`` takes Eqs. (3.41), (3.42).
+    """
+    (_, k12, k13), (_, k22, k23), (alpha, beta) = first, second, powers
+    low, high = (1.0 + alpha) / 2.0, (1.0 + beta) / 2.0
+    spread = float(joints) ** (1.0 - high)
+    if printed:
+        fractional = 2.0 * min(k12, k22)
+        superlinear = 2.0 * spread * min(k12, k23) / inertia
+    else:
+        fractional = min(k12 * 2.0**low, k22 * (2.0 / inertia) ** low)
+        superlinear = 2.0 ** (1.0 - high) * spread * min(k13 * 2.0**high, k23 * (2.0 / inertia) ** high)
+    return 2.0 / (fractional * share * (1.0 - alpha)) + 2.0 / (superlinear * share * (beta - 1.0))

@@ -1,0 +1,30 @@
+"""Torques that do not accelerate the task: the dynamically consistent null space, Eq. (3.29)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dposv
+
+Array = NDArray[np.float64]
+
+
+def consistent_inverse(mass: Array, jacobian: Array, damping: float = 1e-6) -> tuple[Array, Array]:
+    """Inertia-weighted inverse Jbar = M^-1 J^T (J M^-1 J^T + damping)^-1, (n, m), and U = I - J^T Jbar^T, (n, n).
+
+    U maps any joint torque to one that gives the task no acceleration (up to the damping): J M^-1 U = 0.
+    mass: (n, n), positive definite [kg m^2]; jacobian: (m, n).
+    """
+    weighted = dposv(mass, jacobian.T)[1]
+    square = jacobian @ weighted
+    square.flat[:: len(square) + 1] += damping
+    inverse = dposv(square, weighted.T)[1].T
+    return inverse, np.eye(len(mass)) - jacobian.T @ inverse.T
+
+
+def damped_inverse(jacobian: Array, damping: float) -> Array:
+    """J^T (J J^T + damping I)^-1, shape (n, m)."""
+    square = jacobian @ jacobian.T
+    square.flat[:: len(square) + 1] += damping
+    result: Array = dposv(square, jacobian)[1].T
+    return result

@@ -1,0 +1,107 @@
+"""Keeping an arm near a point that it has to pass: the remote centre of motion (Sects. 3.2.5 and 3.3.2)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def cross(a: Any, b: Any) -> Array:
+    """Cross product of two vectors (3,), faster than numpy's for one pair."""
+    (x, y, z), (u, v, w) = a, b
+    return np.array((y * w - z * v, z * u - x * w, x * v - y * u))
+
+
+def closest_point(centre: Array, corners: Sequence[Array]) -> tuple[int, Array]:
+    """Segment, counted from 0, and its point (3,) [m] that is nearest to the centre, over a line through corners."""
+    best, found = math.inf, (0, corners[0])
+    for index, (start, end) in enumerate(pairwise(corners)):
+        along = end - start
+        share = float((centre - start) @ along) / float(along @ along)
+        point = start + min(max(share, 0.0), 1.0) * along
+        gap = centre - point
+        square = float(gap @ gap)
+        if square < best:
+            best, found = square, (index, point)
+    return found
+
+
+def centre_force(centre: Array, point: Array, stiffness: float) -> Array:
+    """F_R = K_R (P_R - point), (3,) [N]: pulls the arm's nearest point to the remote centre, Eq. (3.31)."""
+    return stiffness * (centre - point)
+
+
+def printed_centre_force(centre: Array, tip: Array, wrist: Array, stiffness: float) -> Array:
+    """F_R = K_R R with R exactly as printed in Eq. (3.31), (3,) [N]: the scale multiplies the whole difference.
+
+    tip: end joint P_E, wrist: joint before it P_EA [m]. With arrows from the first letter to the second the
+    difference is that from P_R to P_EA, so the force is not across the link.
+    """
+    to_tip, link = tip - centre, tip - wrist
+    reach, length = float(np.linalg.norm(to_tip)), float(np.linalg.norm(link))
+    if reach < 1e-9:
+        return np.zeros(3)
+    cosine = float(to_tip @ link) / (reach * length)
+    result: Array = stiffness * (to_tip - link) * cosine * reach / length
+    return result
+
+
+def tilt(desired: Array, actual: Array) -> Array:
+    """omega q_U, (3,) [rad]: the rotation vector from the desired tool axis to the actual one, unit vectors (3,)."""
+    axis = cross(desired, actual)
+    sine, cosine = math.sqrt(float(axis @ axis)), float(desired @ actual)
+    if sine < 1e-12:
+        # Aligned, or exactly opposed: then any axis across will do.
+        return np.zeros(3) if cosine > 0 else math.pi * _across(actual)
+    return axis * (math.atan2(sine, cosine) / sine)
+
+
+def aligned(rotation: Array, desired: Array, printed: bool = False) -> Array:
+    """The actual orientation (3, 3) turned by the least rotation that brings its z axis to the desired one, Eq. (3.21).
+
+    printed: turn about q_U = q_D x q as printed, the axis that leads from the desired axis to the actual one.
+    """
+    turn = tilt(desired, rotation[:, 2])
+    result: Array = rotation_matrix(turn if printed else -turn) @ rotation
+    return result
+
+
+def rotation_matrix(vector: Array) -> Array:
+    """Rotation (3, 3) of a rotation vector (3,) [rad], Eqs. (3.21), (3.22) corrected."""
+    angle = math.sqrt(float(vector @ vector))
+    if angle < 1e-15:
+        return np.eye(3)
+    x, y, z = (vector / angle).tolist()
+    skew = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
+    result: Array = np.eye(3) + math.sin(angle) * skew + 2.0 * math.sin(angle / 2) ** 2 * (skew @ skew)
+    return result
+
+
+def tool_axis(reference: Array, centre: Array, target: Array, lever: float) -> Array:
+    """Unit tool axis (3,) that passes through the centre: from it to the reference, or to the target near the centre.
+
+    The direction to the reference is undefined where the reference is at the centre; it is used once the reference is
+    more than ``lever`` [m] beyond the centre towards the target.
+    """
+    final = target - centre
+    final = final / math.sqrt(float(final @ final))
+    offset = reference - centre
+    if float(offset @ final) <= lever:
+        return final
+    result: Array = offset / math.sqrt(float(offset @ offset))
+    return result
+
+
+def _across(vector: Array) -> Array:
+    """A unit vector at right angles to a unit vector."""
+    other = np.zeros(3)
+    other[int(np.abs(vector).argmin())] = 1.0
+    result = cross(vector, other)
+    return result / math.sqrt(float(result @ result))

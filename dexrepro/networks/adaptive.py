@@ -1,0 +1,51 @@
+"""A network linear in its weights, which learns while it controls."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dexrepro.networks.basis import Array, Basis
+
+
+class AdaptiveNetwork:
+    """Y(z) = W^T G(z) with the weight law dW/dt = gain G e^T - leakage W, Eq. (4.30), by explicit Euler steps.
+
+    The weights of nodes to come are reserved and zero, so a new node leaves the output unchanged.
+
+    basis: the features G. outputs: length of Y. gain: adaptation gain (Delta, Gamma), a number or one an output.
+    leakage: forgetting rate [1/s]; the book's Delta gamma. step: period of :meth:`adapt` [s].
+    """
+
+    def __init__(self, basis: Basis, outputs: int, *, gain: float | ArrayLike, leakage: float, step: float) -> None:
+        self.basis, self.step, self.leakage = basis, step, leakage
+        self.gain = np.asarray(gain, dtype=float)
+        self._weights = np.zeros((outputs, basis.capacity))  # one row an output: long rows, fast updates
+        self._change = np.empty_like(self._weights)
+        self.features = np.empty(0)
+
+    @property
+    def weights(self) -> Array:
+        """W, shape (features at the last output, outputs); a view."""
+        return self._weights[:, : len(self.features)].T
+
+    def reset(self, weights: ArrayLike | None = None) -> None:
+        """Set the first rows of W to ``weights`` (n, outputs), n <= capacity, and all others to zero."""
+        self._weights[:] = 0.0
+        if weights is not None:
+            rows = np.asarray(weights, dtype=float)
+            self._weights[:, : len(rows)] = rows.T
+
+    def output(self, z: ArrayLike, grow: bool = False) -> Array:
+        """Y(z), shape (outputs,); ``grow`` lets the basis add a node for ``z`` first."""
+        self.features = self.basis(z, grow)
+        return self._weights[:, : len(self.features)] @ self.features
+
+    def adapt(self, error: Array) -> None:
+        """One step of the weight law, at the input of the last :meth:`output`; ``error`` e has shape (outputs,)."""
+        n = len(self.features)
+        weights, change = self._weights[:, :n], self._change[:, :n]
+        if self.leakage:
+            weights *= 1.0 - self.step * self.leakage
+        np.multiply((self.step * self.gain * error)[:, None], self.features, out=change)
+        weights += change

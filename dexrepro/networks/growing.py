@@ -1,0 +1,100 @@
+"""Gaussian features whose nodes are added where the input goes, with trigonometric enhancement."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dexrepro.networks.basis import Array, Basis, squared_distances
+
+
+class GrowingGaussians(Basis):
+    """Gaussians that gain a node whenever the input is far from the nearest nodes, Eqs. (3.4)-(3.7), (4.5)-(4.10).
+
+    With c the mean of the ``neighbours`` centres nearest to z (all, while there are fewer), a node is added at
+    c + placement (z - c) when |z - c| > threshold. The first input becomes the first node.
+
+    width, threshold: in the unit of the input. placement: a number or one a dimension (1: the node sits at the input).
+    interval: growth is considered at every ``interval``-th call that asks for it (the book's T over the control
+    period). enhanced: beside s_i each node has the features cos(s_i) and sin(s_i), Eq. (4.8); features are ordered
+    node by node, so that growth appends. max_nodes: memory is reserved for as many; once full, no node is added.
+    """
+
+    def __init__(
+        self,
+        dimension: int,
+        *,
+        width: float,
+        threshold: float,
+        neighbours: int = 1,
+        placement: float | Array = 1.0,
+        interval: int = 1,
+        enhanced: bool = True,
+        max_nodes: int = 500,
+    ) -> None:
+        self.dimension, self.width, self.threshold = dimension, float(width), float(threshold)
+        self.neighbours, self.placement, self.interval = neighbours, np.asarray(placement, dtype=float), interval
+        self.enhanced, self.max_nodes = enhanced, max_nodes
+        self.features_per_node = 3 if enhanced else 1
+        self.capacity = max_nodes * self.features_per_node
+        self._centres = np.empty((max_nodes, dimension))
+        self._difference = np.empty((max_nodes, dimension))
+        self._squared = np.empty(max_nodes)
+        self._gaussian = np.empty(max_nodes)
+        self._features = np.empty((max_nodes, self.features_per_node))
+        self.reset()
+
+    def reset(self, centres: ArrayLike | None = None) -> None:
+        """Start again from ``centres`` (n, dimension), or from none."""
+        known = np.empty((0, self.dimension)) if centres is None else np.asarray(centres, dtype=float)
+        if len(known) > self.max_nodes:
+            raise ValueError(f"{len(known)} centres do not fit: the network holds at most {self.max_nodes} nodes")
+        self.nodes = len(known)
+        self._centres[: self.nodes] = known
+        self._calls = 0
+
+    @property
+    def centres(self) -> Array:
+        """Centres of the present nodes, shape (nodes, dimension); a view."""
+        return self._centres[: self.nodes]
+
+    def __call__(self, z: ArrayLike, grow: bool = False) -> Array:
+        """Features at ``z``, shape (nodes features_per_node,)."""
+        if self.nodes == 0:
+            self._append(np.asarray(z, dtype=float))
+        squared = squared_distances(self.centres, z, self._difference[: self.nodes], self._squared[: self.nodes])
+        if grow:
+            if self._calls % self.interval == 0 and self._grow(np.asarray(z, dtype=float), squared):
+                squared = squared_distances(
+                    self.centres, z, self._difference[: self.nodes], self._squared[: self.nodes]
+                )
+            self._calls += 1
+        gaussian = self._gaussian[: self.nodes]
+        np.multiply(squared, -1.0 / self.width**2, out=gaussian)
+        np.exp(gaussian, out=gaussian)
+        if not self.enhanced:
+            return gaussian
+        features = self._features[: self.nodes]
+        features[:, 0] = gaussian
+        np.cos(gaussian, out=features[:, 1])
+        np.sin(gaussian, out=features[:, 2])
+        return features.reshape(-1)
+
+    def _grow(self, z: Array, squared: Array) -> bool:
+        if self.nodes == self.max_nodes:
+            return False
+        if self.neighbours == 1:
+            nearest = self._centres[int(squared.argmin())]
+        elif self.nodes <= self.neighbours:
+            nearest = self.centres.mean(axis=0)
+        else:
+            nearest = self._centres[np.argpartition(squared, self.neighbours - 1)[: self.neighbours]].mean(axis=0)
+        offset = z - nearest
+        if float(offset @ offset) <= self.threshold**2:
+            return False
+        self._append(nearest + self.placement * offset)
+        return True
+
+    def _append(self, centre: Array) -> None:
+        self._centres[self.nodes] = centre
+        self.nodes += 1

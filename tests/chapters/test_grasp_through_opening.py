@@ -1,0 +1,60 @@
+import math
+
+import numpy as np
+import pytest
+
+from dexrepro import config
+from dexrepro.chapters.chapter3 import grasp_through_opening as joined
+from dexrepro.chapters.chapter3 import reach
+from dexrepro.runner import live
+from dexrepro.vision.tabletop import Item
+
+RED = (0.9, 0.1, 0.1, 1.0)
+
+
+@pytest.fixture(scope="module")
+def settings():
+    composed = config.compose_chapter("3")
+    values = config.experiment_cases(composed, "grasp_through_opening")["random"]
+    return live({**values, "perturbation": 0.0, "seed": 0, "case": "random"})
+
+
+def picture(settings, items):
+    return joined._picture(settings, items, np.random.default_rng(0))
+
+
+def item(settings, dx=0.0, dy=0.0, yaw=0.0):
+    return Item(settings.centre[0] + dx, settings.centre[1] + dy, yaw, (0.04, 0.08, 0.05), False, RED)
+
+
+def test_opening_is_found_in_the_picture(settings):
+    seen = picture(settings, [item(settings)])
+    assert joined.find_opening(seen, settings) == pytest.approx(settings.centre[:2], abs=0.004)
+
+
+def test_proposals_lie_on_what_stands_out(settings):
+    block = item(settings, 0.03, -0.02)
+    grasps = joined.proposals(picture(settings, [block]), settings.centre[:2], settings, np.random.default_rng(1))
+    assert len(grasps) > 50
+    assert all(block.covers(np.array((g.x, g.y)), 0.012) for g in grasps)
+    assert np.median([g.z for g in grasps]) == pytest.approx(settings.centre[2] - 0.3 + 0.05, abs=0.005)
+
+
+def test_an_empty_box_has_no_proposals(settings):
+    assert joined.proposals(picture(settings, []), settings.centre[:2], settings, np.random.default_rng(1)) == []
+
+
+def test_a_block_gripped_across_its_short_side_is_lifted_out_and_one_gripped_along_is_not(settings):
+    block, floor = item(settings, 0.03, 0.02, yaw=0.6), settings.centre[2] - settings.box.height
+    for angle, lifted in ((0.6, 1), (0.6 + math.pi / 2, 0)):
+        grasp = joined.Grasp(block.x, block.y, angle, floor + 0.05)
+        result = joined._attempt(settings, [block], grasp, tuple(settings.centre), joined.Recording())
+        assert result["lifted"] == lifted
+
+
+def test_roll_error_takes_the_nearer_side_of_the_fingers(settings):
+    down = np.diag((1.0, -1.0, -1.0))
+    law = reach.Reach.__new__(reach.Reach)
+    for roll, expected in ((0.0, 0.0), (math.pi, 0.0), (0.05, 0.05), (math.pi - 0.05, -0.05), (1.0, 0.1)):
+        law.config = type(settings)({**settings, "roll": roll})
+        assert law._roll_error(down, down[:, 2]) == pytest.approx(expected, abs=1e-9)

@@ -1,0 +1,23 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dexrepro.control.null_space import consistent_inverse, damped_inverse
+
+
+@given(st.integers(0, 10_000), st.sampled_from([3, 5, 6]))
+@settings(max_examples=20, deadline=None)
+def test_null_space_torque_does_not_accelerate_the_task(seed, size):
+    rng = np.random.default_rng(seed)
+    root, jacobian = rng.standard_normal((7, 7)), rng.standard_normal((size, 7))
+    mass = root @ root.T + np.eye(7)
+    inverse, projector = consistent_inverse(mass, jacobian, damping=0.0)
+    assert jacobian @ inverse == pytest.approx(np.eye(size), abs=1e-7)
+    assert projector @ projector == pytest.approx(projector, abs=1e-6)
+    assert jacobian @ np.linalg.solve(mass, projector @ rng.standard_normal(7)) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_damped_inverse_tends_to_the_right_inverse():
+    jacobian = np.random.default_rng(1).standard_normal((3, 7))
+    assert jacobian @ damped_inverse(jacobian, 1e-12) == pytest.approx(np.eye(3))
