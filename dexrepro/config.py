@@ -22,7 +22,7 @@ from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
-from omegaconf import OmegaConf
+from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 SETTINGS = ("only", "figure", "seed", "results", "workers", "force", "quiet", "gui")
@@ -170,12 +170,13 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
     if not isinstance(block, Mapping):
         raise InputError(f"experiment '{experiment}' has no block in its chapter's configuration")
     base = {key: value for key, value in block.items() if key != "cases"}
+    names = _names(composed)
     result: dict[str, dict[str, Any]] = {}
-    for name, overrides in _expanded(block.get("cases") or {"default": {}}, composed, experiment):
+    for name, overrides in _expanded(block.get("cases") or {"default": {}}, names, experiment, base):
         merged = copy.deepcopy(base)
         for key, value in overrides.items():
             _assign(merged, key, copy.deepcopy(value), f"{experiment}.cases.{name}")
-        result[name] = _resolve(composed, experiment, merged)
+        result[name] = _resolve(names, experiment, merged)
         check_values(result[name], experiment)
     return result
 
@@ -183,11 +184,11 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
 def resolved_block(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
     """The experiment's own block, resolved, without its cases."""
     block = {key: value for key, value in composed[experiment].items() if key != "cases"}
-    return _resolve(composed, experiment, block)
+    return _resolve(_names(composed), experiment, block)
 
 
 def _expanded(
-    cases: Mapping[str, Any], composed: Mapping[str, Any], experiment: str
+    cases: Mapping[str, Any], names: DictConfig, experiment: str, base: Mapping[str, Any]
 ) -> Iterator[tuple[str, Mapping[str, Any]]]:
     for name, overrides in cases.items():
         overrides = overrides or {}
@@ -196,7 +197,7 @@ def _expanded(
             continue
         key = overrides["each"]
         rest = {other: value for other, value in overrides.items() if other != "each"}
-        values: Any = resolved_block(composed, experiment)
+        values: Any = _resolve(names, experiment, base)
         for part in key.split("."):
             values = values[part]
         for value in values if isinstance(values, list) else [values]:
@@ -222,11 +223,19 @@ def _assign(node: dict[str, Any], dotted: str, value: Any, where: str) -> None:
         node[last] = value
 
 
-def _resolve(composed: Mapping[str, Any], experiment: str, block: Mapping[str, Any]) -> dict[str, Any]:
-    names = {key: value for key, value in composed.items() if key != "hydra"}
-    config = OmegaConf.create({**names, experiment: dict(block)})
+def _names(composed: Mapping[str, Any]) -> DictConfig:
+    """What interpolations may refer to, made once for all cases: most of the work is in making it."""
+    blocks = {key: value for key, value in composed.items() if key != "hydra"}
+    for key, value in blocks.items():
+        if isinstance(value, Mapping):
+            blocks[key] = {name: item for name, item in value.items() if name != "cases"}
+    return OmegaConf.create(blocks)
+
+
+def _resolve(names: DictConfig, experiment: str, block: Mapping[str, Any]) -> dict[str, Any]:
+    names[experiment] = dict(block)
     try:
-        return OmegaConf.to_container(config[experiment], resolve=True)  # type: ignore[return-value]
+        return OmegaConf.to_container(names[experiment], resolve=True)  # type: ignore[return-value]
     except OmegaConfBaseException as error:
         raise InputError(f"{experiment}: {' '.join(str(error).split())}") from error
 

@@ -13,7 +13,10 @@ from pathlib import Path
 import pytest
 from conftest import ROOT, Shell
 
-ONLY_K = [f"~movement_estimation.cases.{case}" for case in ("sigma", "light", "printed", "total")]
+ONLY_K = [
+    f"~movement_estimation.cases.{case}"
+    for case in ("sigma", "light10", "light30", "fast_stiffness", "printed", "total")
+]
 SHORT = " ".join(["movement_estimation.duration=0.05", *map(repr, ONLY_K)])
 
 

@@ -8,6 +8,7 @@ x_1 [m] and the contact force f_x on it [N, positive in compression]; the result
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 from dexrepro.control.movement_estimation import MovementEstimation
@@ -24,7 +25,7 @@ class NonImpedanceReference:
     def __init__(
         self,
         *,
-        estimation: MovementEstimation,
+        estimation: MovementEstimation | KnownMovement,
         desired_force: Any,
         smoothing_rate: float,
         smoothing_power: float,
@@ -63,3 +64,43 @@ class ImpedanceReference(NonImpedanceReference):
         estimate = self.estimation
         lead = (self.damping * estimate.velocity + self.mass * estimate.acceleration) / self.stiffness
         return super()._target() + lead
+
+
+class FadeIn:
+    """Fades any holding law in from where the arm stands, as the estimated references are.
+
+    smoothing_rate, smoothing_power: mu, eta. dt: control period [s].
+    """
+
+    def __init__(self, *, law: Any, smoothing_rate: float, smoothing_power: float, dt: float) -> None:
+        self.law, self.dt = law, dt
+        self.smoothing_rate, self.smoothing_power = smoothing_rate, smoothing_power
+
+    def reset(self, position: Any) -> None:
+        self.law.reset(position)
+        self._start, self._sample = position, 0
+
+    def __call__(self, position: Any, force: Any) -> Any:
+        fade = -math.expm1(-self.smoothing_rate * (self._sample * self.dt) ** self.smoothing_power)
+        self._sample += 1
+        return self._start + fade * (self.law(position, force) - self._start)
+
+
+class KnownMovement:
+    """Stands in for an estimation where the partner's movement and the object are known (Fig. 2.5).
+
+    movement: function without arguments that gives the rest position x_c [m] and its velocity [m/s].
+    stiffness: k_o [N/m]. dt: control period [s], over which the velocity is differenced.
+    """
+
+    def __init__(self, *, movement: Callable[[], tuple[float, float]], stiffness: float, dt: float) -> None:
+        self._movement, self.stiffness, self._dt = movement, stiffness, dt
+        self.position = self.velocity = self.acceleration = 0.0
+
+    def reset(self) -> None:
+        self.position, self.velocity = self._movement()
+
+    def __call__(self, position: Any, force: Any) -> None:
+        before = self.velocity
+        self.position, self.velocity = self._movement()
+        self.acceleration = (self.velocity - before) / self._dt

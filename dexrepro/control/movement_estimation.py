@@ -72,28 +72,33 @@ class MovementEstimation:
             self._move_origin()
         dt, rates, a = self.dt, self.rates, self.coefficients
         time = self._sample * dt
-        powers = [time**j for j in range(len(a))]
-        self._predict(powers)
+        self._predict(time)
         error = self.stiffness * (self.position - position) - force
         if self.implicit:
             load = rates[0] * position * position
-            for rate, power in zip(rates[1:], powers):
-                load = load + rate * power * power
+            for j, rate in enumerate(rates[1:]):
+                load = load + rate * time ** (2 * j)
             error = error / (1.0 + dt * load)
         stiffness_rate = rates[0] * position * error
-        for j, power in enumerate(powers):
-            a[j] = a[j] - dt * (rates[j + 1] * power * error + stiffness_rate * a[j]) / self.stiffness
+        power, step = 1.0, dt / self.stiffness
+        for j, rate in enumerate(rates[1:]):
+            a[j] = a[j] - step * (rate * power * error + stiffness_rate * a[j])
+            power *= time
         self.stiffness = self._maximum(self.floor, self.stiffness + dt * stiffness_rate)
         self._sample += 1
 
-    def _predict(self, powers: list[float]) -> None:
-        a, before = self.coefficients, self.position
-        self.position = sum(c * power for c, power in zip(a[1:], powers[1:])) + a[0]
+    def _predict(self, time: float) -> None:
+        """Position, velocity and acceleration of the polynomial, by Horner's rule."""
+        before, position, velocity, acceleration = self.position, 0.0, 0.0, 0.0
+        for coefficient in reversed(self.coefficients):
+            acceleration = acceleration * time + 2 * velocity
+            velocity = velocity * time + position
+            position = position * time + coefficient
+        self.position = position
         if self.total:
-            self.velocity = self.velocity + self._blend * ((self.position - before) / self.dt - self.velocity)
+            self.velocity = self.velocity + self._blend * ((position - before) / self.dt - self.velocity)
         else:
-            self.velocity = sum(j * a[j] * powers[j - 1] for j in range(1, len(a)))
-            self.acceleration = sum(j * (j - 1) * a[j] * powers[j - 2] for j in range(2, len(a)))
+            self.velocity, self.acceleration = velocity, acceleration
 
     def _move_origin(self) -> None:
         a = self.coefficients

@@ -41,11 +41,11 @@ class AdaptiveNetwork:
         self.features = self.basis(z, grow)
         return self._weights[:, : len(self.features)] @ self.features
 
-    def adapt(self, error: ArrayLike) -> None:
+    def adapt(self, error: Array) -> None:
         """One step of the weight law, at the input of the last :meth:`output`; ``error`` e has shape (outputs,)."""
         n = len(self.features)
         weights, change = self._weights[:, :n], self._change[:, :n]
         if self.leakage:
             weights *= 1.0 - self.step * self.leakage
-        np.multiply((self.step * self.gain * np.asarray(error))[:, None], self.features, out=change)
+        np.multiply((self.step * self.gain * error)[:, None], self.features, out=change)
         weights += change

@@ -40,16 +40,23 @@ class PlanarPairs:
 
     def contact(self) -> tuple[tuple[Array, Array], Array, Array]:
         """Tips (x, y), each of shape (2, runs) [m]; the force on arm 1, shape (2, runs) [N]; its magnitude [N]."""
-        x, y = self.chain.forward(self.position)
+        self._links = self.chain.links(self.position)
+        x, y = self.chain.forward(self.position, self._links)
         dx, dy = x[1] - x[0], y[1] - y[0]
         length = np.sqrt(dx * dx + dy * dy)
         magnitude = np.maximum(self._least, self.stiffness * (self.rest_length - length))
         pressure = magnitude / length
         return (x, y), np.array((pressure * dx, pressure * dy)), magnitude
 
-    def step(self, torque: Array, force: Array) -> None:
-        """Advance by one semi-implicit step under joint torques (3, 2, runs) [N m] and the contact force on arm 1."""
-        both = np.stack((-force, force), axis=1)
-        total = torque + np.array(self.chain.tip_torque(self.position, both))
-        self.velocity += self.dt * np.array(self.chain.acceleration(self.position, self.velocity, total))
+    def step(self, torque: Array, force: Array, compensated: Array | None = None) -> None:
+        """Advance by one semi-implicit step from the state of the last ``contact``.
+
+        torque: joint torques (3, 2, runs) [N m]. force: the contact force (2, runs) on arm 1 [N]. compensated: part of
+        it that both arms cancel with a joint torque of their own.
+        """
+        links = self._links
+        rest = force if compensated is None else force - compensated
+        if rest.any():
+            torque = torque + np.array(self.chain.tip_torque(self.position, np.stack((-rest, rest), axis=1), links))
+        self.velocity += self.dt * np.array(self.chain.acceleration(self.position, self.velocity, torque, links))
         self.position += self.dt * self.velocity

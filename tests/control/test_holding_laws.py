@@ -5,7 +5,7 @@ import pytest
 
 from dexrepro.control.force_control import ForceControl, IntegralForceControl
 from dexrepro.control.holding_line import HoldingLineRegulation
-from dexrepro.control.holding_reference import ImpedanceReference, NonImpedanceReference
+from dexrepro.control.holding_reference import FadeIn, ImpedanceReference, KnownMovement, NonImpedanceReference
 from dexrepro.control.joint_pd import JointPD
 from dexrepro.control.movement_estimation import MovementEstimation
 from dexrepro.control.passive_impedance import PassiveImpedance
@@ -122,3 +122,37 @@ def test_joint_pd_pulls_towards_the_reference_and_brakes():
     law = JointPD(stiffness=np.array([700.0, 600.0]), damping=np.array([10.0, 1.0]))
     assert law(np.array([0.1, 0.0]), np.zeros(2), np.array([0.0, 2.0])) == pytest.approx([70.0, -2.0])
     assert law(np.zeros(2), np.zeros(2), np.ones(2), np.ones(2)) == pytest.approx([0.0, 0.0])
+
+
+def test_a_faded_law_starts_at_rest_and_ends_as_itself():
+    law = FadeIn(law=ForceControl(gain=0.01, desired_force=1.0), smoothing_rate=5, smoothing_power=1, dt=DT)
+    law.reset(0.5)
+    targets = [law(0.5, 3.0) for _ in range(4000)]
+    assert targets[0] == 0.5
+    assert targets[-1] == pytest.approx(0.52, abs=1e-9)
+
+
+def test_known_movement_with_an_impedance_lead_holds_the_force_exactly():
+    """On an arm of its own impedance the reference of Eq. (2.31) leaves no steady-state error, Eq. (2.30)."""
+    mass, damping, stiffness = 0.5, 4.0, 10.0
+    time = iter(np.arange(0, 100) * 10 * DT)
+    movement = KnownMovement(
+        movement=lambda: (lambda t: (REST + 0.02 * t, 0.02))(next(time)), stiffness=STIFFNESS, dt=DT
+    )
+    movement.reset()
+    movement(0.5, 1.0)
+    lead = (mass * movement.acceleration + damping * movement.velocity) / stiffness
+    reference = movement.position + lead - DESIRED / STIFFNESS
+    # Eq. (2.30) with the estimates true.
+    error = (
+        STIFFNESS
+        / (stiffness + STIFFNESS)
+        * (
+            -stiffness / STIFFNESS * DESIRED
+            + mass * movement.acceleration
+            + damping * movement.velocity
+            + stiffness * movement.position
+            - stiffness * reference
+        )
+    )
+    assert error == pytest.approx(0, abs=1e-12)

@@ -67,11 +67,15 @@ def test_lyapunov_function_falls_by_the_exact_discrete_amount(rate, stiffness):
     for i in range(200):
         before, t, x = lyapunov(), i * DT, 0.5 + 0.03 * math.sin(i * DT)
         k, a = law.stiffness, law.coefficients
+        phi = [k * c - p for c, p in zip(a, truth[1:])]
         error = k * (a[0] + a[1] * t + a[2] * t * t - x) - stiffness * (rest(t) - x)
         load = rates[0] * x * x + rates[1] + rates[2] * t**2 + rates[3] * t**4
+        dk = rates[0] * x * error  # the product k a_j has a remainder of second order in the step, Eq. (2.18)
+        remainders = [DT**2 * dk * (g * t**j * error + dk * c) / k for j, (g, c) in enumerate(zip(rates[1:], a))]
+        second_order = sum(abs(p * r) + r * r for p, r in zip(phi, remainders)) / min(rates)
         law(x, stiffness * (rest(t) - x))
         exact = -DT * error**2 * (1 - 0.5 * DT * load)
-        assert lyapunov() - before == pytest.approx(exact, abs=1e-4 * abs(exact) + 40 * DT**2 * rate * error**2)
+        assert lyapunov() - before == pytest.approx(exact, rel=1e-3, abs=2 * second_order + 1e-12)
 
 
 def test_printed_time_diverges_once_the_step_limit_is_passed():

@@ -8,7 +8,7 @@ def test_weights_settle_where_the_error_balances_the_leakage():
     network = AdaptiveNetwork(Gaussians([[0.0]], 1.0), outputs=2, gain=[3.0, 5.0], leakage=2.0, step=1e-3)
     for _ in range(8000):
         network.output([0.0])
-        network.adapt([1.0, -2.0])
+        network.adapt(np.array([1.0, -2.0]))
     assert network.weights == pytest.approx(np.array([[1.5, -5.0]]), rel=1e-6)  # gain e / leakage
 
 
@@ -35,7 +35,7 @@ def test_a_new_node_leaves_the_output_unchanged():
     basis = GrowingGaussians(1, width=1.0, threshold=0.5)
     network = AdaptiveNetwork(basis, outputs=1, gain=1.0, leakage=0.0, step=0.1)
     network.output([0.0], grow=True)
-    network.adapt([2.0])
+    network.adapt(np.array([2.0]))
     before = network.output([0.8])
     after = network.output([0.8], grow=True)
     assert basis.nodes == 2

@@ -53,6 +53,20 @@ def test_dynamics_agree_with_a_rigid_body_library(q, dq, torque):
     assert ARM.acceleration(q, dq, torque) == pytest.approx(expected, rel=1e-8, abs=1e-8)
 
 
+@settings(deadline=None, max_examples=20)
+@given(angles, angles, angles)
+def test_inverse_dynamics_undoes_the_dynamics(q, dq, torque):
+    assert ARM.torque(q, dq, ARM.acceleration(q, dq, torque)) == pytest.approx(torque, abs=1e-9)
+
+
+@settings(deadline=None, max_examples=20)
+@given(angles, angles)
+def test_centripetal_acceleration_is_the_second_derivative_at_constant_rates(q, dq):
+    h = 1e-4
+    places = [np.array(ARM.forward([a + s * h * b for a, b in zip(q, dq)])) for s in (-1, 0, 1)]
+    assert ARM.centripetal(q, dq) == pytest.approx((places[0] - 2 * places[1] + places[2]) / h**2, abs=1e-4)
+
+
 def test_closed_loop_inverse_kinematics_reaches_its_target():
     q = (math.pi / 3,) * 3
     for _ in range(30):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -19,9 +20,41 @@ from dexrepro.physics.planar_batch import PlanarPairs
 from dexrepro.robots.planar_chain import PlanarChain
 
 Array = NDArray[np.float64]
+SPIN = 200.0  # rad/s, a joint faster than this has lost control whatever the force
+Rows = list[dict[str, Any]]
 
 # Runs whose law differs in structure (not in a number) are stepped in separate groups.
 STRUCTURE = ("law", "window", "velocity", "order", "implicit")
+
+
+def table_rows(setting: Mapping[str, Any], laws: Sequence[str] | None = None) -> Rows:
+    """The runs s1 ... s18 of Table 2.1 under a setting (columns as in the configuration's ``run``).
+
+    laws: only the runs of these controllers ("force", "passive_impedance", "no_impedance", "impedance").
+    """
+    rows, number = [], 0
+    groups = (
+        (("force", "passive_impedance", "no_impedance", "impedance"), 1, 1.0),
+        (("passive_impedance", "no_impedance", "impedance"), 2, 1.0),
+        (("no_impedance", "impedance"), 2, 7.0),
+    )
+    for controllers, trajectory, force in groups:
+        for controller, regulated in itertools.product(controllers, (False, True)):
+            number += 1
+            if laws is None or controller in laws:
+                row = {**setting, "trajectory": trajectory, "desired_force": force, "run": f"s{number}"}
+                rows.append(controlled_by(controller, row if regulated else row | {"regulation": 0.0}))
+    return rows
+
+
+def controlled_by(controller: str, row: Mapping[str, Any]) -> dict[str, Any]:
+    """A run's settings with one of the compared controllers; NoIm is Im without mass and damping."""
+    if controller == "impedance":
+        return {**row, "law": "estimated"}
+    if controller == "no_impedance":
+        return {**row, "law": "estimated", "mass": 0.0, "damping": 0.0}
+    law = row.get("law_of_force", controller) if controller == "force" else controller
+    return {**row, "law": law, "window": None, "velocity": "", "order": 0, "implicit": False}
 
 
 def simulate_runs(
@@ -29,12 +62,13 @@ def simulate_runs(
 ) -> pd.DataFrame:
     """Simulate one planar pair for every row of ``runs`` and reduce its force error.
 
-    runs: one row a run, one column a setting (see ``default_run``). edges: instants [s] that part the run.
+    runs: one row a run, one column a setting (those of ``run`` in the chapter's configuration).
+    edges: instants [s] that part the run.
     noise: draws the force noise of the runs whose ``noise`` is not 0.
     Returns, row by row, the mean square ``square_k`` and the mean ``mean_k`` of ||F|| - f_d [N] in the k-th part, and
     ``lost``, the share of time without contact. A run that diverged has NaN.
     """
-    order = runs.sort_values(list(STRUCTURE), kind="stable", na_position="last")
+    order = runs.astype({"window": float}).sort_values(list(STRUCTURE), kind="stable", na_position="last")
     with np.errstate(all="ignore"):
         result = _loop(order, config, np.asarray(edges), noise)
     result.index = order.index
@@ -42,70 +76,69 @@ def simulate_runs(
 
 
 def _loop(runs: pd.DataFrame, config: Any, edges: Array, noise: np.random.Generator | None) -> pd.DataFrame:
-    dt, arm = config.dt, config.arm
-    p = {name: column.to_numpy() for name, column in runs.items()}
-    chain = PlanarChain(arm.lengths, arm.masses, (np.array(config.bases)[:, :1], 0.0), np)
-    start = np.stack([np.repeat(np.array(config.poses[name])[:, None], len(runs), 1) for name in ("leader", "b")], 1)
-    plant = PlanarPairs(
-        chain,
-        start,
-        stiffness=p["object_stiffness"],
-        rest_length=p["rest_length"],
-        dt=dt,
-        unilateral=p["unilateral"].astype(bool),
-    )
-    kp = np.array(arm.stiffness)[:, None, None] * p["kp_scale"]
-    kd = np.array(arm.damping)[:, None, None] * p["kd_scale"]
-    gravity = np.where(p["gravity"], 9.81, 0.0)
-    laws = _laws(runs, dt)
-    regulation = HoldingLineRegulation(gain=p["regulation"])
-    (x, y), force, _ = plant.contact()
-    home_x, home_y = x.copy(), y.copy()
+    dt = config.step
+    p = {str(name): column.to_numpy() for name, column in runs.items()}
+    plant = _plant(p, config)
+    chain = plant.chain
+    kp = np.array(config.arm.stiffness)[:, None, None] * p["kp_scale"]
+    kd = np.array(config.arm.damping)[:, None, None] * p["kd_scale"]
+    gravity, lead = np.where(p["gravity"], 9.81, 0.0), kd * p["velocity_reference"] / dt
+    laws, regulation = grouped_laws(runs, dt), HoldingLineRegulation(gain=p["regulation"])
+    home_x, home_y = plant.contact()[0]
     for part, law in laws:
-        law.reset(x[1, part].copy())
-    joints, before = tuple(start.copy()), start
+        law.reset(home_x[1, part])
+    joints: Any = tuple(plant.position)
+    wanted = plant.position.copy()
+    first, swing_rate = p["trajectory"] == 1, 2 * math.pi / config.period
+    parts = np.searchsorted(np.round(edges[1:] / dt), np.arange(round(edges[-1] / dt)), "right")
     squares, sums = np.zeros((len(edges) - 1, len(runs))), np.zeros((len(edges) - 1, len(runs)))
-    lost, reference = np.zeros(len(runs)), np.zeros(len(runs))
-    steps, parts = (
-        round(edges[-1] / dt),
-        np.searchsorted(np.round(edges[1:] / dt), np.arange(round(edges[-1] / dt)), "right"),
-    )
-    for i in range(steps):
-        time = i * dt
-        (x, y), force, magnitude = plant.contact()
+    lost, reference, spun = np.zeros(len(runs)), np.zeros(len(runs)), np.zeros(len(runs), dtype=bool)
+    for i, part_index in enumerate(parts):
+        (x, _), force, magnitude = plant.contact()
         error = magnitude - p["desired_force"]
-        squares[parts[i]] += error * error
-        sums[parts[i]] += error
+        squares[part_index] += error * error
+        sums[part_index] += error
         lost += magnitude <= 0
-        measured = force if noise is None else force + p["noise"] * noise.standard_normal(force.shape)
+        measured = force if noise is None else force + p["noise"] * noise.standard_normal((2, 1))
         for part, law in laws:
             reference[part] = law(x[1, part], measured[0, part])
-        np.clip(reference, *config.workspace, out=reference)
-        swing = config.amplitude * math.sin(2 * math.pi / config.period * time)
-        first = p["trajectory"] == 1
-        leader_x = home_x[0] + np.where(first, swing, config.drift * time)
+        np.clip(reference, *config.follower.workspace, out=reference)
+        swing = config.leader.amplitude * math.sin(swing_rate * i * dt)
+        leader_x = home_x[0] + np.where(first, swing, config.leader.drift * i * dt)
         leader_y = home_y[0] + np.where(first, 0.0, swing)
         follower_y = home_y[1] + regulation(measured[1])
-        joints = chain.approach(
-            joints, (np.stack((leader_x, reference)), np.stack((leader_y, follower_y))), config.ik_damping
-        )
+        target = np.stack((leader_x, reference)), np.stack((leader_y, follower_y))
+        joints, before = chain.approach(joints, target, config.arm.ik_damping), wanted
         wanted = np.array(joints)
-        torque = kp * (wanted - plant.position) - kd * plant.velocity
-        if p["velocity_reference"].any():
-            torque += kd * p["velocity_reference"] * (wanted - before) / dt
-            before = wanted
+        torque = kp * (wanted - plant.position) - kd * plant.velocity + lead * (wanted - before)
         if gravity.any():
             torque -= np.array(chain.gravity(plant.position, gravity))
-        cancel = np.stack((-measured, measured), axis=1) * p["compensation"]
-        torque -= np.array(chain.tip_torque(plant.position, cancel))
-        plant.step(torque, force)
+        plant.step(torque, force, measured * p["compensation"])
+        if i % 20 == 0:
+            spun |= ~(np.abs(plant.velocity).max(axis=(0, 1)) < SPIN)
+    squares[:, spun] = np.nan
     counts = np.bincount(parts, minlength=len(edges) - 1)[:, None]
     columns = {f"square_{k}": row for k, row in enumerate(squares / counts)}
     columns |= {f"mean_{k}": row for k, row in enumerate(sums / counts)}
-    return pd.DataFrame(columns | {"lost": lost / steps})
+    return pd.DataFrame(columns | {"lost": lost / len(parts)})
 
 
-def _laws(runs: pd.DataFrame, dt: float) -> list[tuple[slice, Any]]:
+def _plant(p: Mapping[str, Any], config: Any) -> PlanarPairs:
+    """The arms of all runs in the printed poses; arm 0 leads, arm 1 follows."""
+    bases = np.array([[config.leader.base[0]], [config.follower.base[0]]])
+    chain = PlanarChain(config.arm.lengths, config.arm.masses, (bases, 0.0), np)
+    start = np.array([config.leader.pose, config.follower.pose]).T + config.perturbation
+    return PlanarPairs(
+        chain,
+        np.repeat(start[:, :, None], len(p["law"]), axis=2),
+        stiffness=p["object_stiffness"],
+        rest_length=p["rest_length"],
+        dt=config.step,
+        unilateral=p["unilateral"].astype(bool),
+    )
+
+
+def grouped_laws(runs: pd.DataFrame, dt: float) -> list[tuple[slice, Any]]:
     """The law of every group of structurally equal, adjacent runs."""
     laws, start = [], 0
     for _, rows in runs.groupby(list(STRUCTURE), sort=False, dropna=False):

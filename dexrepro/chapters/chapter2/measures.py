@@ -22,6 +22,11 @@ def mean(values: Array) -> float | None:
     return float(values.mean()) if values.size else None
 
 
+def shown(value: float | int | None) -> float:
+    """A metric as a figure takes it: not a number where it is absent."""
+    return math.nan if value is None else float(value)
+
+
 def last_outside(time: Array, error: Array, bound: float) -> float:
     """Time [s] after which the magnitude of an error stays within a bound: the end of the run if it never does."""
     outside = np.flatnonzero(np.abs(error) > bound)

@@ -54,6 +54,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "early_residual": rms(residual[early]),
         "convergence_time": last_outside(time, residual, 1e-3),
         "velocity_slope": _slope(true_velocity[late], velocity[late]),
+        "held": recording.simulated,
+        "smallest_stiffness": float(stiffness.min()),
         "replay_difference": _replay(recording, config),
     }
 
@@ -64,11 +66,18 @@ def _slope(true: Any, estimated: Any) -> float | None:
 
 
 def _replay(recording: Recording, config: Config) -> float:
-    """Largest difference [m] of the reference when the law alone is fed the follower's own position and force."""
-    law, positions = config.law, recording["follower.tip"][:, 0].tolist()
+    """Largest difference [m] of the reference when the law alone is fed the arm's own position and force."""
+    start = recording.between(0, 10)
+    law, positions = config.law, recording["follower.tip"][start, 0].tolist()
     law.reset(positions[0])
-    replayed = [law(x, f) for x, f in zip(positions, recording["follower.force"][:, 0].tolist())]
-    return float(np.abs(np.array(replayed) - recording["reference"][:, 0]).max())
+    replayed = [law(x, f) for x, f in zip(positions, recording["follower.force"][start, 0].tolist())]
+    return float(np.abs(np.array(replayed) - recording["reference"][start, 0]).max())
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """How the offset of the estimate scales from the desired force of the runs to one a tenth of it."""
+    light, full = (metrics.get(case, {}).get("estimation_error") for case in ("light30", "sigma30"))
+    return {"offset_ratio": light / full} if light and full else {}
 
 
 def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:

@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 from dexrepro.control.holding_line import HoldingLineRegulation
 from dexrepro.control.joint_pd import JointPD
+from dexrepro.control.target_impedance import TargetImpedance
 from dexrepro.experiment import Config, Recording
-from dexrepro.physics.elements import Elastic
+from dexrepro.physics.elements import Elastic, Ends
+from dexrepro.physics.plant import Controller
 from dexrepro.physics.world import World
 from dexrepro.robots.planar import planar
 from dexrepro.robots.planar_chain import PlanarChain
@@ -23,24 +23,44 @@ def scene(config: Config) -> World:
     for name in ("leader", "follower"):
         arm = planar(config.arm.lengths, config.arm.masses, base=config[name].base)
         world.add_arm(name, arm, config[name].pose)
-    between = ("follower", "leader")
-    world.add(Elastic("object", between, config.stiffness, config.rest_length, unilateral=True))
+    if config.get("object_model", "central") == "central":
+        between = ("follower", "leader")
+        world.add(Elastic("object", between, config.stiffness, config.rest_length, unilateral=True))
+    else:
+        world.add(ConstantVector(config.stiffness, config.rest_length))
     return world
 
 
 def simulate(config: Config) -> Recording:
+    """Run the pair with the law of the configuration, every sample recorded; see ``run``."""
+    with scene(config) as world:
+        return run(world, config, config.law, record_every=1)
+
+
+def run(world: World, config: Config, law: Any, record_every: int = 5) -> Recording:
     """Run the pair; besides the World's channels, records the follower's ``reference`` and its ``estimate`` if any.
 
+    law: makes x_1,r from the follower's own position and force, see ``dexrepro.control.holding_reference``.
     ``reference``: x_1,r along the holding line before the workspace bounds, and the lateral position asked for [m].
     ``estimate``: rest position [m], stiffness [N/m] and velocity of that position [m/s] as believed.
+    The run ends once the force is that of the fully squeezed object.
     """
-    leader, follower = Leader(config), Follower(config)
+    follower = Follower(config, law)
     probes: dict[str, Callable[[], Any]] = {"reference": lambda: follower.reference}
-    estimation = getattr(config.law, "estimation", None)
+    estimation = getattr(law, "estimation", None)
     if estimation is not None:
         probes["estimate"] = lambda: (estimation.position, estimation.stiffness, estimation.velocity)
-    with scene(config) as world:
-        return world.run(config.duration, {"leader": leader, "follower": follower}, probes=probes, on_divergence="stop")
+    (contact,) = world.elements
+    limit = config.stiffness * config.rest_length
+
+    def squeezed(time: float) -> str | None:
+        force = contact.channels()["force"]
+        return f"diverged at {time:.4g} s: the force is {force:.4g} N" if force >= limit else None
+
+    controllers: dict[str, Controller] = {"leader": Leader(config), "follower": follower}
+    return world.run(
+        config.duration, controllers, probes=probes, stop=squeezed, record_every=record_every, on_divergence="stop"
+    )
 
 
 def path(config: Config) -> Callable[[float], tuple[float, float]]:
@@ -56,15 +76,29 @@ class TipServo:
 
     def __init__(self, config: Config, base: tuple[float, float]) -> None:
         self.chain = PlanarChain(config.arm.lengths, config.arm.masses, base)
-        self._pd = JointPD(stiffness=np.array(config.arm.stiffness), damping=np.array(config.arm.damping))
+        # One law a joint: plain floats are several times faster here than arrays of three.
+        self._laws = [JointPD(stiffness=k, damping=d) for k, d in zip(config.arm.stiffness, config.arm.damping)]
         self._damping = config.arm.ik_damping
         self._joints: Any = None
 
-    def __call__(self, sense: Any, target: tuple[float, float]) -> Any:
+    def __call__(self, sense: Any, target: tuple[float, float]) -> list[float]:
         """Torque [N m] towards a tip position (x, y) [m], the measured contact force compensated."""
-        q = sense.position.tolist()
+        q, dq = sense.position.tolist(), sense.velocity.tolist()
         self._joints = self.chain.approach(self._joints or q, target, self._damping)
-        return self._pd(self._joints, sense.position, sense.velocity) - self.chain.tip_torque(q, sense.force.tolist())
+        contact = self.chain.tip_torque(q, sense.force.tolist())
+        return [law(r, a, v) - t for law, r, a, v, t in zip(self._laws, self._joints, q, dq, contact)]
+
+
+class ImpedanceServo:
+    """The same interface for an arm that realises the target impedance of Eq. (2.25) itself."""
+
+    def __init__(self, config: Config, base: tuple[float, float]) -> None:
+        self.chain = PlanarChain(config.arm.lengths, config.arm.masses, base)
+        self._law = TargetImpedance(model=self.chain, desired_force=config.desired_force, **config.impedance)
+
+    def __call__(self, sense: Any, target: tuple[float, float]) -> list[float]:
+        fx, fy, _ = sense.force.tolist()
+        return self._law(sense.position.tolist(), sense.velocity.tolist(), (fx, fy), target)
 
 
 class Leader:
@@ -74,7 +108,7 @@ class Leader:
         self._servo, self._path = TipServo(config, config.leader.base), path(config)
         self._home = self._servo.chain.forward(config.leader.pose)
 
-    def __call__(self, sense: Any) -> Any:
+    def __call__(self, sense: Any) -> list[float]:
         dx, dy = self._path(sense.time)
         return self._servo(sense, (self._home[0] + dx, self._home[1] + dy))
 
@@ -85,14 +119,16 @@ class Follower:
     reference: the last x_1,r and y_1,d [m].
     """
 
-    def __init__(self, config: Config) -> None:
-        self._law, self._servo = config.law, TipServo(config, config.follower.base)
-        self._regulation = HoldingLineRegulation(gain=config.follower.regulation)
+    def __init__(self, config: Config, law: Any) -> None:
+        servo = ImpedanceServo if config.get("realisation") == "impedance" else TipServo
+        self._law, self._servo = law, servo(config, config.follower.base)
+        sign = config.follower.get("regulation_sign", -1.0)
+        self._regulation = HoldingLineRegulation(gain=config.follower.regulation, sign=sign)
         self._low, self._high = config.follower.workspace
         self._home: tuple[float, float] | None = None
         self.reference = (0.0, 0.0)
 
-    def __call__(self, sense: Any) -> Any:
+    def __call__(self, sense: Any) -> list[float]:
         x, y = self._servo.chain.forward(sense.position.tolist())
         if self._home is None:
             self._home = x, y
@@ -101,3 +137,33 @@ class Follower:
         along, across = self._law(x, fx), self._home[1] + self._regulation(fy)
         self.reference = along, across
         return self._servo(sense, (min(max(along, self._low), self._high), across))
+
+
+class ConstantVector:
+    """The other reading of Eqs. (2.3)-(2.5): D keeps its direction, so the force has the lateral part k_o (y_2 - y_1).
+
+    A force element in place of ``Elastic``, with the same channels; it never pulls along the holding line.
+    """
+
+    name = "object"
+
+    def __init__(self, stiffness: float, rest_length: float) -> None:
+        self._stiffness, self._rest_length = stiffness, rest_length
+        self.force = self.length = 0.0
+
+    def bind(self, world: Ends) -> Callable[[float], None]:
+        follower, leader = world.end("follower"), world.end("leader")
+
+        def apply(time: float) -> None:
+            dx, dy = follower.x - leader.x, follower.y - leader.y
+            along, across = self._stiffness * (self._rest_length - dx), -self._stiffness * dy
+            self.length = math.hypot(dx, dy)
+            self.force = math.hypot(along, across) if along > 0 else 0.0
+            if self.force:
+                follower.push(along, across, 0.0)
+                leader.push(-along, -across, 0.0)
+
+        return apply
+
+    def channels(self) -> dict[str, float]:
+        return {"force": self.force, "length": self.length}

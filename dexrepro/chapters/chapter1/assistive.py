@@ -1,0 +1,56 @@
+"""The assistive follower from approach to holding: potential field, hand-over at contact, holding law."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dexrepro.chapters.chapter1.followers import ComputedTorque, Follower
+from dexrepro.control.hand_over import ContactLatch
+from dexrepro.control.potential_field import PotentialField
+from dexrepro.physics.plant import Sense
+
+Array = NDArray[np.float64]
+
+
+class AssistiveFollower:
+    """Where AFR goes: into the field until the latch closes, then at the holding law's distance from DFR, Eq. (1.33).
+
+    speed_limit: of the distance command [m/s]. ``phase`` is 0 in the field and 1 while holding; ``switches`` counts
+    changes of it; ``opening`` [m] is added to the distance (to let go).
+    """
+
+    def __init__(
+        self, follower: Follower, field: PotentialField, latch: ContactLatch, law: Any, *, speed_limit: float
+    ) -> None:
+        self.follower, self.field, self.latch, self.law = follower, field, latch, law
+        self.step = speed_limit * follower.dt
+        self.phase, self.switches, self.force, self.opening = 0, 0, 0.0, 0.0
+
+    def reset(self, position: Array, tip: Array) -> None:
+        """Start from joint angles [rad] and the end point [m] that belongs to them, in the field."""
+        self.follower.reset(position)
+        self.field.reset(tip)
+        self.latch.reset()
+
+    def go(self, sense: Sense, partner: Array, axis: Array, measured: Array, rotation: Array) -> ComputedTorque:
+        """One control period: commanded pose of DFR (``partner`` [m], ``axis``), object as seen, own orientation."""
+        tip = sense.tip
+        self.force = max(0.0, float(sense.force @ axis))
+        holding = self.latch(self.force)
+        if holding and not self.phase:
+            self.contact = float((tip - partner) @ axis)
+            self.law.reset(0.0)
+            self.reference = 0.0
+        elif self.phase and not holding:
+            self.field.reset(tip)
+        self.switches += int(holding != bool(self.phase))
+        self.phase = int(holding)
+        if not holding:
+            return self.follower.go(sense, self.field(partner, axis, measured) + self.opening * axis, rotation)
+        wanted = float(self.law(float((tip - partner) @ axis) - self.contact, self.force))
+        self.reference += min(self.step, max(-self.step, wanted - self.reference))
+        target = partner + (self.contact + self.reference + self.opening) * axis
+        return self.follower.go(sense, target, rotation)

@@ -1,0 +1,142 @@
+"""What a reader who implements Chapter 1 must know beyond the printed equations."""
+
+from __future__ import annotations
+
+from dexrepro.experiment import Erratum
+
+TRACKING = "force_tracking"
+
+ERRATA = (
+    Erratum(
+        "E1.01",
+        "(1.3)",
+        "error",
+        "k_E (X_c - X_d) is positive feedback for k_E > 0: the arms leave their paths within a tenth of a second.",
+        "k_E (X_d - X_c)",
+        f"{TRACKING}.inverse_gain=-100",
+        (f"{TRACKING}.c1_printed_inverse.finished", f"{TRACKING}.c1_proposed.tracking"),
+    ),
+    Erratum("E1.02", "(1.11)", "slip", "The last term has Delta X_D in the leader's frame.", "Delta X_L, as in (1.10)"),
+    Erratum(
+        "E1.03",
+        "(1.11), (1.45)",
+        "reading",
+        "With s(v) applied to the total displacement since the fixing the tool is pulled back whenever the hand slows "
+        "down; (1.11) is stated for a constant s and says that t_0 may be set anew at will.",
+        "Apply s to the displacement of each sample (fix anew every sample).",
+        evidence=(
+            "relative_pose.default.incremental_end",
+            "relative_pose.default.total_end",
+            "relative_pose.default.total_pull_back",
+        ),
+    ),
+    Erratum(
+        "E1.04",
+        "text after (1.12)",
+        "slip",
+        "1 + r11 + r22 + r33 equals 4 q0^2 and is never negative; the singular case is 0 (half-turns), where rounding "
+        "can make it negative.",
+        "Take the quaternion from the largest of its four components.",
+        evidence=(
+            "relative_pose.default.half_turn_printed",
+            "relative_pose.default.half_turn",
+            "relative_pose.default.radicand",
+        ),
+    ),
+    Erratum(
+        "E1.05",
+        "(1.19), (1.21), (1.22), (1.37)",
+        "slip",
+        "X_1, X_2, z_2, w_m stand for X_D, X_A, z_A, w_um; x_D in the two compared laws of 1.5.1 is AFR's position.",
+    ),
+    Erratum(
+        "E1.06",
+        "(1.20)",
+        "reading",
+        "d_3 jumps at the upper bound; the weight w_3 gates the jump exactly only where the object is on the holding "
+        "line.",
+    ),
+    Erratum(
+        "E1.07",
+        "(1.24)",
+        "reading",
+        "sgn(F) min(|k_p F|, dX_max) of a vector may be meant by component (taken here) or along F; they agree as long "
+        "as nothing is clipped.",
+    ),
+    Erratum("E1.08", "(1.27)", "slip", "The dots before the last term are missing; m lags make m + 1 weights."),
+    Erratum(
+        "E1.09", "(1.29), (1.32), (1.42)", "slip", "The derivative is of the estimate (hat), not of its error (tilde)."
+    ),
+    Erratum(
+        "E1.10",
+        "(1.25), (1.26) against (1.30), (1.32)",
+        "error",
+        "With e_f = f_z - f_d and a compressed spring, -alpha e_f in (1.32) is positive feedback: taken together the "
+        "definition and the laws lose contact at once, whatever the direction of z. The laws are consistent among "
+        "themselves, and with both compared controllers, for the opposite definitions.",
+        "e_f = f_d - f_z and e_z = z_r - z_A, all laws as printed.",
+        f"{TRACKING}.law.error=printed",
+        (f"{TRACKING}.c1_printed.rmse", f"{TRACKING}.c1_proposed.rmse", "hold_and_move.t1_printed.rmse"),
+    ),
+    Erratum(
+        "E1.11",
+        "(1.30)",
+        "error",
+        "Consequence of E1.10: the sign of the beta term; invisible at the printed beta of 1e-4.",
+        "As E1.10.",
+    ),
+    Erratum(
+        "E1.12",
+        "(1.37), (1.43), (1.44)",
+        "error",
+        "Consequence of E1.10: with the printed definitions the cross terms of dV/dt do not cancel.",
+        "As E1.10; (1.44) then stands as printed.",
+        "lyapunov.error=printed",
+        ("lyapunov.ideal.rising", "lyapunov.printed.rising"),
+    ),
+    Erratum(
+        "E1.13",
+        "(1.35), (1.38)-(1.40)",
+        "error",
+        "W~ = W - W^ contradicts the signs of (1.38) and (1.39); the dot on W~ in (1.39) and (1.40) is spurious.",
+        "W~ = W^ - W",
+    ),
+    Erratum(
+        "E1.14",
+        "(1.31)",
+        "gap",
+        "z_d(t - dt) = z_A(t) presumes the tracking that is to be proved; with it V rises during part of the run and "
+        "small estimator gains are unstable.",
+        "N (1 - k beta) < L (L + k alpha) with N = Z.Z.",
+        evidence=("lyapunov.built.rising", "lyapunov.growth.growth_0p12", "lyapunov.growth.growth_0p3"),
+    ),
+    Erratum(
+        "E1.15",
+        "(1.33)",
+        "gap",
+        "With z_r(0) = 0 the literal form puts AFR on DFR.",
+        "X_A = X_D + R_D [0, 0, l_c + z_r] with the distance l_c at first contact.",
+    ),
+    Erratum(
+        "E1.16",
+        "1.5.1, compared controllers",
+        "reading",
+        "With e_f of (1.25) the force controller runs away while the passive one is stable; part of E1.10, not an "
+        "error of its own.",
+    ),
+    Erratum(
+        "E1.17",
+        "(1.37)",
+        "gap",
+        "A varying k_o adds k_o' e_f^2 / (2 k_o^2) to dV/dt; harmless here (0.001 against alpha = 0.11).",
+        "alpha > max |k_o'| / (2 k_o^2)",
+    ),
+    Erratum("E1.18", "Theorem 1.1", "slip", "It is an assumption (perfect tracking without delay), not a theorem."),
+    Erratum(
+        "E1.19",
+        "1.5.1, 1.5.2",
+        "gap",
+        "Not printed: M, D, K of the proposed law, sample time and duration of Fig. 1.10, all gains of the potential "
+        "field, the stiffness of the object in Fig. 1.18, the gains for rigid boxes.",
+    ),
+)

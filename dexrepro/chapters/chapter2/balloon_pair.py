@@ -1,0 +1,171 @@
+"""The two arms of a simulated Baxter with a balloon between their grippers (Sect. 2.4.2): scene, controllers, run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dexrepro.control.computed_torque import ComputedTorque
+from dexrepro.control.holding_line import HoldingLineRegulation
+from dexrepro.experiment import Config, Recording
+from dexrepro.physics.elements import Elastic
+from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.sensor import Sensor
+from dexrepro.physics.world import World
+from dexrepro.robots.arm import Arm
+from dexrepro.robots.baxter import baxter, torso
+from dexrepro.robots.inverse_kinematics import InverseKinematics, solve
+
+Array = NDArray[np.float64]
+
+# The grippers face each other along y: columns are the gripper's axes in the torso frame.
+FACING = {
+    "right": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
+    "left": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [-1.0, 0.0, 0.0]]),
+}
+RECORD_EVERY = 5  # steps
+ROLES = {"leader": "right", "follower": "left"}
+
+
+def start(config: Config, role: str) -> Array:
+    """Where the gripper of a role starts, shape (3,) [m]; the follower's is off the leader's line in x and z."""
+    place = np.array(config[role].start, dtype=float)
+    if role == "follower":
+        place[[0, 2]] += config.discrepancy
+    return place
+
+
+def scene(config: Config, rng: Any = None) -> World:
+    """Both arms, each with a force sensor at its gripper, and a massless balloon that pushes them apart."""
+    world = World(step=config.step, perturbation=config.perturbation)
+    world.add_body("torso", torso(), (0, 0, 0), collides=False)
+    sensor = Sensor(force_noise=config.sensor.noise, force_cutoff=config.sensor.cutoff)
+    for role, side in ROLES.items():
+        arm = baxter(side)
+        posture = solve(arm, start(config, role), FACING[side], start=config[role].posture, task="pose")
+        noise = rng(f"{role} sensor") if rng else np.random.default_rng(0)
+        world.add_arm(role, arm, posture, sensor=sensor, rng=noise)
+    between = ("follower", "leader")
+    world.add(Elastic("object", between, config.stiffness, config.rest_length, unilateral=True))
+    return world
+
+
+def run(config: Config, rng: Any, path: Callable[[float], Array]) -> Recording:
+    """Approach, then hold for the configured duration; time counts from the contact that triggers the law.
+
+    path: displacement (3,) [m] of the leader's gripper at the time [s] since then; the operator sees the contact.
+    Besides the World's channels, records the follower's ``reference`` (3,) [m].
+    """
+    with scene(config, rng) as world:
+        follower = Follower(config, world.arm("follower").arm)
+        leader = Leader(config, world.arm("leader").arm, path, lambda now: follower.since_contact(now))
+
+        def stop(now: float) -> str | None:
+            force = world.elements[0].channels()["force"]
+            if force > config.guard:
+                return f"diverged at {now:.4g} s: the force is {force:.4g} N"
+            return "finished" if follower.since_contact(now) >= config.duration else None
+
+        recording = world.run(
+            config.duration + config.longest_approach,
+            {"leader": leader, "follower": follower},
+            probes={"reference": lambda: follower.reference},
+            stop=stop,
+            record_every=RECORD_EVERY,
+            on_divergence="stop",
+        )
+    recording.series["time"] -= follower.contact_time if math.isfinite(follower.contact_time) else 0.0
+    return recording
+
+
+class GripperServo:
+    """Keeps the gripper's orientation and takes it to a place: inverse kinematics before computed torque.
+
+    Joint references are solved every 4 ms and torques every 2 ms, far faster than the joints' 30 rad/s.
+    """
+
+    def __init__(self, config: Config, arm: Arm, rotation: Array) -> None:
+        servo = config.servo
+        self._model, self._rotation, self._step = RigidBodyModel(arm), rotation, config.step
+        self._inverse = InverseKinematics(
+            arm, "pose", servo.ik_gain, 4 * config.step, servo.ik_damping, rest_gain=servo.rest_gain,
+            kinematics=self._model,
+        )  # fmt: skip
+        self._law = ComputedTorque(model=self._model, frequency=servo.frequency)
+        self._sample = 0
+        self._torque: Array = np.zeros(arm.dof)
+
+    @property
+    def due(self) -> bool:
+        """Whether the next call looks at its target."""
+        return self._sample % 4 == 0
+
+    def __call__(self, sense: Any, target: Array) -> Array:
+        """Torque (7,) [N m] towards a place (3,) [m], the measured contact force compensated."""
+        inverse, q = self._inverse, sense.position
+        if self._sample == 0:
+            inverse.reset(q)
+            inverse.rest = q.copy()
+        if self.due:
+            self._reference = inverse.position
+            inverse(target, self._rotation)
+        if self._sample % 2 == 0:
+            ahead = self._reference + (self._sample % 4 + 1) * self._step * inverse.velocity
+            contact = sense.force @ self._model.jacobian(q)[:3]
+            self._torque = self._law(ahead, q, sense.velocity, inverse.velocity) - contact
+        self._sample += 1
+        return self._torque
+
+
+class Leader:
+    """The directly teleoperated follower, Eq. (2.1): the hand's displacement, turned by R and scaled by s."""
+
+    def __init__(
+        self, config: Config, arm: Arm, path: Callable[[float], Array], elapsed: Callable[[float], float]
+    ) -> None:
+        self._servo, self._home = GripperServo(config, arm, FACING["right"]), start(config, "leader")
+        self._map = config.scale * np.array(config.rotation)
+        self._hand = np.linalg.inv(self._map)
+        self._path, self._elapsed = path, elapsed
+
+    def __call__(self, sense: Any) -> Array:
+        if self._servo.due:
+            hand = self._hand @ self._path(self._elapsed(sense.time))
+            self._target = self._home + self._map @ hand
+        return self._servo(sense, self._target)
+
+
+class Follower:
+    """The assistive follower: approaches until it feels contact, then holds; it sees its own state and force only.
+
+    reference: the place asked of the gripper (3,) [m]. contact_time: instant of contact [s], infinite before it.
+    """
+
+    def __init__(self, config: Config, arm: Arm) -> None:
+        self._servo, self._law = GripperServo(config, arm, FACING["left"]), config.law
+        self._approach, self._threshold = config.approach_speed * config.step, config.contact_force
+        self._regulations = [HoldingLineRegulation(gain=config.regulation) for _ in "xz"]
+        self.reference = self._home = start(config, "follower")
+        self.contact_time = math.inf
+
+    def since_contact(self, now: float) -> float:
+        """Time [s] since contact, 0 before it."""
+        return max(now - self.contact_time, 0.0)
+
+    def __call__(self, sense: Any) -> Array:
+        fx, fy, fz = sense.force.tolist()
+        if self.contact_time == math.inf:
+            self.reference = self.reference - np.array((0.0, self._approach, 0.0))
+            if math.sqrt(fx * fx + fy * fy + fz * fz) > self._threshold:
+                self.contact_time = sense.time
+                self._home[1] = sense.tip[1]
+                self._law.reset(0.0)
+        else:
+            along = self._law(sense.tip[1] - self._home[1], fy)
+            (x, z), home = (law(force) for law, force in zip(self._regulations, (fx, fz))), self._home
+            self.reference = np.array((home[0] + x, home[1] + along, home[2] + z))
+        return self._servo(sense, self.reference)

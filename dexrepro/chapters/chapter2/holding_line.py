@@ -1,0 +1,88 @@
+"""Keeping to the holding line: what the lateral regulation does for the holding force (Sect. 2.4.1.1)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from dexrepro.chapters.chapter2 import planar_pair
+from dexrepro.chapters.chapter2.measures import force_error, mean, rms
+from dexrepro.control.holding_reference import KnownMovement
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+
+FIGURES = {
+    "2.5": Figure(
+        "Holding force and lateral offset of the two tips with and without the regulation (2.8): (a) the arms start 80 "
+        "mm apart across the line, (b) the partner swings across it. The partner's movement and the object are known "
+        "to the follower here, as in the book, which shows the upper row.",
+        "With the regulation the force stays at 1 N; without it the force is too small, in case 2 at times zero.",
+    ),
+}
+RATE = 50.0
+SETTLED = 5.0  # s
+
+scene = planar_pair.scene
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    with scene(config) as world:
+        partner = world.arm("leader")
+        movement = KnownMovement(
+            movement=lambda: (config.rest_length + partner.x, partner.vx), stiffness=config.stiffness, dt=config.step
+        )
+        return planar_pair.run(world, config, config.law(estimation=movement))
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    late, force = recording.between(SETTLED), recording["object.force"]
+    offset = np.abs(recording["follower.tip"][:, 1] - recording["leader.tip"][:, 1])
+    length, without = config.rest_length - config.desired_force / config.stiffness, offset[late]
+    stretched = np.hypot(length, without.mean()) if without.size else length
+    return {
+        "rmse": rms(force_error(recording, config.desired_force, SETTLED)),
+        "mean_force": mean(force[late]),
+        "predicted_force": config.stiffness * (config.rest_length - stretched),
+        "mean_distance": mean(recording["object.length"][late]),
+        "lost": mean((force[1:] <= 0).astype(float)),
+        "largest_offset": float(without.max()) if without.size else None,
+        "survived": recording.simulated,
+    }
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    gains: Metrics = {}
+    for case in ("case1", "case2"):
+        rmse = [metrics.get(f"{case}_{switch}", {}).get("rmse") for switch in ("without", "with")]
+        off, on = (math.nan if value is None else value for value in rmse)
+        gains[f"{case}_gain"] = off - on
+    return gains
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    cases = [case for case in ("case1", "case2") if {f"{case}_with", f"{case}_without"} <= set(recordings)]
+    if not cases:
+        return {}
+    from dexrepro.report import style
+
+    figure, grid = style.subplots(2, len(cases), height=3.4, sharex=True, sharey="row", squeeze=False)
+    lines = {"with": ("with (2.8)", "book"), "without": ("without", "plain")}
+    titles = {"case1": "start 80 mm apart (Case 1)", "case2": "partner swings across (Case 2)"}
+    for column, case, letter in zip(grid.T, cases, "ab"):
+        for switch, (label, line) in lines.items():
+            run = recordings[f"{case}_{switch}"]
+            offset = run["follower.tip"][:, 1] - run["leader.tip"][:, 1]
+            column[0].plot(run.time, run["object.force"], label=label, **style.LINES[line])
+            column[1].plot(run.time, 1e3 * offset, **style.LINES[line])
+        column[0].axhline(config.desired_force, label="$f_d$", **style.LINES["reference"])
+        style.panel(column[0], letter, titles[case])
+        column[1].set_xlabel("Time [s]")
+    grid[0, 0].set(ylabel="Holding force $\\|F\\|$ [N]", ylim=(-0.1, 2.6))
+    grid[1, 0].set_ylabel("Offset $y_1 - y_2$ [mm]")
+    grid[0, 0].legend(loc="upper right", ncols=3)
+    lost = metrics.get("case2_without", {}).get("lost")
+    found = f"; without it the object is lost for {100 * lost:.0f} % of case 2" if lost else ""
+    style.title(figure, f"The regulation keeps the arms on one line and the force at 1 N{found}")
+    return {"2.5": figure}

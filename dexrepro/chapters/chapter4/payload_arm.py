@@ -1,0 +1,188 @@
+"""A Baxter arm whose gripper carries a loosely hanging payload (Sect. 4.6): scene, point-to-point motions, runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dexrepro.chapters.chapter4.two_link import Reference
+from dexrepro.control.global_adaptive import GlobalAdaptiveControl
+from dexrepro.experiment import Config, Recording
+from dexrepro.networks import AdaptiveNetwork, GrowingGaussians, Lattice
+from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import Sense
+from dexrepro.physics.rendering import Camera
+from dexrepro.physics.world import World
+from dexrepro.robots import kinematics
+from dexrepro.robots.arm import Arm
+from dexrepro.robots.baxter import baxter
+
+Array = NDArray[np.float64]
+TRAINING = (0, 1)  # phases I and II; phase III has the numbers 2 to 10, one a trajectory
+START_COLOUR, END_COLOUR = (0.90, 0.62, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
+EVERY = 2  # physics steps between recorded samples
+
+
+class TipKinematics:
+    """End point (3,) of the gripper as the robot reports it, and its Jacobian (3, 7); torso frame."""
+
+    def __init__(self, model: RigidBodyModel) -> None:
+        self._model = model
+        self.tip = np.zeros(3)
+
+    def position(self, q: Array) -> Array:
+        return self.tip
+
+    def jacobian(self, q: Array) -> Array:
+        return self._model.jacobian(q)[:3]
+
+
+def posture_at(arm: Arm, point: ArrayLike, posture: ArrayLike) -> Array:
+    """Joint angles (7,) [rad] with the end point at ``point`` [m], as near to ``posture`` as its null space allows."""
+    q = preferred = np.asarray(posture, dtype=float)
+    for _ in range(200):
+        jacobian = kinematics.jacobian(arm, q)[:3]
+        inverse = np.linalg.pinv(jacobian)
+        step = inverse @ (np.asarray(point) - kinematics.forward(arm, q)[0])
+        q = q + step + 0.1 * (np.eye(7) - inverse @ jacobian) @ (preferred - q)
+    return q
+
+
+def via_points(points: Sequence[ArrayLike], times: Sequence[float], step: float) -> Reference:
+    """Minimum-jerk segments from point to point [m], each of a duration [s], at rest at every point."""
+    parts: list[tuple[Array, Array, Array]] = []
+    for start, end, duration in zip(points[:-1], points[1:], times, strict=True):
+        s = (np.arange(round(duration / step)) * step / duration)[:, None]
+        span = np.asarray(end, dtype=float) - np.asarray(start, dtype=float)
+        shape = 10 * s**3 - 15 * s**4 + 6 * s**5
+        rate = (30 * s**2 - 60 * s**3 + 30 * s**4) / duration
+        bend = (60 * s - 180 * s**2 + 120 * s**3) / duration**2
+        parts.append((start + shape * span, rate * span, bend * span))
+    return Reference(*(np.concatenate(columns) for columns in zip(*parts)))
+
+
+def motions(config: Config) -> Iterator[tuple[int, Reference]]:
+    """The runs of a case: phases I and II if it trains, then the nine trajectories from A, B, C to D, E, F."""
+    task = config.task
+    if config.mode in ("reuse", "frozen"):
+        for number, ends in zip(TRAINING, (task.starts, task.ends)):
+            points = [task.home, *(point for end in ends for point in (end, task.home))]
+            yield number, via_points(points, [task.training_time] * 2 * len(ends), config.step)
+    pairs = [(start, end) for start in task.starts for end in task.ends][: task.trajectories]
+    for number, (start, end) in enumerate(pairs, 2):
+        yield number, via_points([task.home, start, end, end], task.times, config.step)
+
+
+def scene(config: Config) -> World:
+    """The right arm at rest with its end point at X_0 and the payload hanging from it."""
+    world = World(step=config.step, gravity=(0.0, 0.0, -9.81), perturbation=config.perturbation)
+    arm = baxter("right")
+    world.add_arm("arm", arm, position=posture_at(arm, config.task.home, config.task.posture))
+    if config.payload:
+        payload = config.payload
+        world.hang("payload", "arm", payload.mass, payload.drop, radius=0.04, angular_damping=payload.angular_damping)
+    if config.picture:
+        points = [*config.task.starts, *config.task.ends]
+        for name, point, colour in zip("ABCDEF", points, [START_COLOUR] * 3 + [END_COLOUR] * 3):
+            world.add_sphere(name, 0.02, point, colour=colour, collides=False)
+    return world
+
+
+class Pilot:
+    """Drives the arm with a law along a reference; the torques that hold the arm alone are added, as its maker does."""
+
+    def __init__(
+        self, law: GlobalAdaptiveControl, tip: TipKinematics, model: RigidBodyModel | None, reference: Reference
+    ) -> None:
+        self.law, self.tip, self.model, self.reference = law, tip, model, reference
+        self.network: Any = law.network
+        self._period = 0
+        law.reset()
+
+    def __call__(self, sense: Sense) -> tuple[Array, Array]:
+        k, reference = self._period, self.reference
+        self._period += 1
+        self.tip.tip = sense.tip
+        torque, damping = self.law(
+            sense.position, sense.velocity, reference.position[k], reference.velocity[k], reference.acceleration[k]
+        )
+        return (torque if self.model is None else torque + self.model.gravity(sense.position)), damping
+
+    def state(self) -> list[float]:
+        """Error (3), usage (3), E, nodes, largest Gaussian of a lattice, for the columns of ``STATE``."""
+        nodes, peak = 0, 0.0
+        if self.network is not None:
+            basis = self.network.basis
+            nodes = basis.nodes if isinstance(basis, GrowingGaussians) else basis.capacity
+            peak = float(self.network.features.max()) if isinstance(basis, Lattice) else 0.0
+        return [*self.law.error, *self.law.usage, self.law.share, nodes, peak]
+
+
+STATE: dict[str, Any] = {"error": slice(0, 3), "usage": slice(3, 6), "share": 6, "nodes": 7, "activation": 8}
+
+
+def simulate(config: Config) -> Recording:
+    """Phases I and II if the case trains, then phase III; each trajectory starts from the same knowledge."""
+    model = RigidBodyModel(baxter("right"))
+    network: AdaptiveNetwork | None = None
+    if config.network is not None:
+        network = config.network(gain=np.array(config.effective_gain) / config.feature_energy)
+    tip = TipKinematics(model)
+    law: GlobalAdaptiveControl = config.law(tip, network)
+    nominal = model if config.gravity_compensation else None
+    parts, images, status, knowledge = [], {}, "finished", None
+    for number, reference in motions(config):
+        if network is not None and number not in TRAINING:
+            if knowledge is None:
+                knowledge = network.weights.copy(), getattr(network.basis, "centres", None)
+            _restore(network, *knowledge)
+            law.learning = config.mode != "frozen"
+        pilot = Pilot(law, tip, nominal, reference)
+        with scene(config) as world:
+            duration = len(reference.position) * config.step
+            part = world.run(
+                duration, {"arm": pilot}, probes={"state": pilot.state}, record_every=EVERY, on_divergence="stop"
+            )
+            if config.picture and number < 3:
+                images[f"phase{number + 1}"] = photograph(world, part, config.task.pictured[number])
+        part.series["reference"] = reference.position[::EVERY][: len(part.time)]
+        parts.append((number, part))
+        if part.status != "finished":
+            status = part.status
+            break
+    model.close()
+    recording = joined(parts, config.step * EVERY)
+    recording.images, recording.status = images, status
+    return recording
+
+
+def _restore(network: AdaptiveNetwork, weights: Array, centres: Array | None) -> None:
+    if isinstance(network.basis, GrowingGaussians):
+        network.basis.reset(centres)
+    network.reset(weights)
+
+
+def joined(parts: list[tuple[int, Recording]], step: float) -> Recording:
+    """One recording of all runs, one after the other in ``time``; ``phase`` numbers them."""
+    state = np.concatenate([part["state"] for _, part in parts])
+    series = {name: state[:, columns] for name, columns in STATE.items()}
+    for name, source in (("torque", "arm.torque"), ("position", "arm.position"), ("tip", "arm.tip")):
+        series[name] = np.concatenate([part[source] for _, part in parts])
+    series["reference"] = np.concatenate([part["reference"] for _, part in parts])
+    series["phase"] = np.concatenate([np.full(len(part.time), number) for number, part in parts])
+    return Recording(
+        {"time": np.arange(len(state)) * step, **series},
+        steps=sum(part.steps for _, part in parts),
+        simulated=sum(part.simulated for _, part in parts),
+    )
+
+
+def photograph(world: World, part: Recording, time: float) -> NDArray[np.uint8]:
+    """The arm and its payload at an instant of a run."""
+    k = min(int(np.searchsorted(part.time, time)), len(part.time) - 1)
+    poses = {"payload": part["payload.pose"][k]} if "payload.pose" in part else {}
+    camera = Camera(target=(0.42, -0.45, 0.15), distance=1.5, yaw=-60.0, pitch=-20.0)
+    return world.render({"arm": part["arm.position"][k]}, poses, camera=camera, size=(480, 480))

@@ -1,0 +1,270 @@
+"""The two-link arm of Sect. 4.5 in its vertical plane: scene, reference motions and the chain of runs that learns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from dexrepro.control.global_adaptive import GlobalAdaptiveControl
+from dexrepro.experiment import Config, Recording
+from dexrepro.networks import GrowingGaussians
+from dexrepro.physics.elements import Push
+from dexrepro.physics.plant import Sense
+from dexrepro.physics.world import World
+from dexrepro.robots.planar import planar
+
+Array = NDArray[np.float64]
+SNAPSHOT = 50  # control periods between two records of the weights
+ELLIPSE, FROZEN = 4, 5  # segment numbers after the strokes 0 to 3
+
+
+class TwoLink:
+    """Kinematics in closed form: x right, y up, joint angles [rad] from the horizontal and from the first link."""
+
+    def __init__(self, lengths: list[float]) -> None:
+        self._first, self._second = lengths
+
+    def position(self, q: Array) -> Array:
+        """Tip (x, y) [m]."""
+        a, b = q[0], q[0] + q[1]
+        return np.array(
+            [
+                self._first * math.cos(a) + self._second * math.cos(b),
+                self._first * math.sin(a) + self._second * math.sin(b),
+            ]
+        )
+
+    def jacobian(self, q: Array) -> Array:
+        """Tip velocity per joint rate, shape (2, 2) [m/rad]."""
+        a, b = q[0], q[0] + q[1]
+        x, y = self._second * math.cos(b), self._second * math.sin(b)
+        return np.array([[-self._first * math.sin(a) - y, -y], [self._first * math.cos(a) + x, x]])
+
+    def inverse(self, x: float, y: float) -> Array:
+        """Joint angles [rad] that put the tip at (x, y) [m], with the elbow angle positive."""
+        cosine = (x * x + y * y - self._first**2 - self._second**2) / (2 * self._first * self._second)
+        elbow = math.acos(cosine)
+        shoulder = math.atan2(y, x) - math.atan2(
+            self._second * math.sin(elbow), self._first + self._second * math.cos(elbow)
+        )
+        return np.array([shoulder, elbow])
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A motion sampled at the control instants: position [m], velocity [m/s], acceleration [m/s^2], each (n, 2)."""
+
+    position: Array
+    velocity: Array
+    acceleration: Array
+
+
+def stroke(config: Config, angle: float, duration: float) -> Reference:
+    """A diameter of the ellipse, travelled to and fro; ``angle`` [deg] is the parameter of its end on the ellipse."""
+    rate, direction = 2 * math.pi / config.task.period, math.radians(angle)
+    phase = rate * np.arange(round(duration / config.step))[:, None] * config.step
+    end = np.array(config.task.semi_axes) * (math.cos(direction), math.sin(direction))
+    sine, cosine = np.sin(phase), np.cos(phase)
+    return Reference(np.array(config.task.centre) + sine * end, rate * cosine * end, -(rate**2) * sine * end)
+
+
+def ellipse(config: Config, duration: float) -> Reference:
+    """The ellipse around the centre, counterclockwise from the parameter ``task.phase``."""
+    rate = 2 * math.pi / config.task.period
+    phase = rate * np.arange(round(duration / config.step)) * config.step + config.task.phase
+    axes = np.array(config.task.semi_axes)
+    circle = np.stack([np.cos(phase), np.sin(phase)], axis=1)
+    turned = np.stack([-np.sin(phase), np.cos(phase)], axis=1)
+    return Reference(np.array(config.task.centre) + axes * circle, rate * axes * turned, -(rate**2) * axes * circle)
+
+
+def scene(config: Config) -> World:
+    """The arm at rest with its tip at the start, under gravity and the force field at its tip."""
+    world = World(step=config.step, gravity=(0.0, -config.arm.gravity, 0.0), perturbation=config.perturbation)
+    arm = planar(config.arm.lengths, config.arm.masses, config.arm.inertias, radius=0.03)
+    world.add_arm("arm", arm, position=TwoLink(config.arm.lengths).inverse(*config.task.start))
+    x, y = config.task.force
+    world.add(Push("arm", lambda time: (x, y, 0.0), name="field"))
+    return world
+
+
+class Pilot:
+    """Drives the arm with a law along a reference, and keeps what the network's weights did.
+
+    The torque's damping term is taken at the present velocity: it is light for these links (K_2 step / M = 0.01).
+    """
+
+    def __init__(self, law: GlobalAdaptiveControl, reference: Reference, averaged: int) -> None:
+        self.law, self.reference = law, reference
+        self.network: Any = law.network
+        self._from = len(reference.position) - averaged
+        self._period = 0
+        self._sum, self._samples = np.empty((0, 0)), 0
+        self.snapshots: list[Array] = []
+        law.reset()
+
+    def __call__(self, sense: Sense) -> Array:
+        k, reference = self._period, self.reference
+        self._period += 1
+        torque, damping = self.law(
+            sense.position, sense.velocity, reference.position[k], reference.velocity[k], reference.acceleration[k]
+        )
+        if self.network is not None:
+            if k % SNAPSHOT == 0:
+                self.snapshots.append(self.network.weights.copy())
+            if k >= self._from:
+                self._average(self.network.weights)
+        return torque - damping * sense.velocity
+
+    def _average(self, weights: Array) -> None:
+        if self._sum.shape != weights.shape:  # the node set grew inside the window: begin anew
+            self._sum, self._samples = np.zeros(weights.shape), 0
+        self._sum += weights
+        self._samples += 1
+
+    @property
+    def mean_weights(self) -> Array:
+        """W-bar, the mean over the last reference period at the final number of nodes (4.31)."""
+        return self._sum / self._samples
+
+    def state(self) -> list[float]:
+        """Error (2), usage (2), E, nodes, |G|^2, |Xi|, largest |Xi_k|, alpha' (2): the columns of ``STATE``."""
+        law, nodes, energy = self.law, 0, 0.0
+        if self.network is not None:
+            basis, features = self.network.basis, self.network.features
+            nodes = basis.nodes if isinstance(basis, GrowingGaussians) else basis.capacity
+            energy = features @ features
+        z = law.input.tolist()
+        norm, peak = math.hypot(*z), max(map(abs, z))
+        return [*law.error, *law.usage, law.share, nodes, energy, norm, peak, *z[6:]]
+
+
+STATE: dict[str, Any] = {"error": slice(0, 2), "usage": slice(2, 4), "share": 4, "nodes": 5, "feature_energy": 6}
+STATE |= {"input_norm": 7, "input_peak": 8, "virtual_acceleration": slice(9, 11)}
+
+
+def simulate(config: Config) -> Recording:
+    """Train on the strokes (if the case trains), then draw the ellipse; segments follow each other in ``time``."""
+    law = config.law(TwoLink(config.arm.lengths))
+    parts, weights, centres = [], [], []
+    status = "finished"
+    for number, reference in _segments(config, law):
+        pilot = Pilot(law, reference, round(config.task.period / config.step))
+        with scene(config) as world:
+            part = world.run(
+                len(reference.position) * config.step,
+                {"arm": pilot},
+                probes={"state": pilot.state},
+                on_divergence="stop",
+            )
+            if config.picture and number == ELLIPSE:
+                part.images["arm"] = picture(world, part["arm.position"][0])
+        parts.append((number, part))
+        weights.append(pilot.snapshots)
+        if part.status != "finished":
+            status = part.status
+            break
+        if pilot.network is not None:
+            centres.append(getattr(pilot.network.basis, "nodes", 0))
+            if law.learning and number < ELLIPSE:
+                pilot.network.reset(pilot.mean_weights)
+    recording = _joined(parts, config)
+    recording.status = status
+    _add_weights(recording, parts, weights, law, config)
+    return recording
+
+
+def _segments(config: Config, law: GlobalAdaptiveControl) -> Iterator[tuple[int, Reference]]:
+    if config.training:
+        for number, angle in enumerate(config.task.stroke_angles):
+            yield number, stroke(config, angle, config.task.stroke_duration)
+    if config.frozen:  # before the learning run, which changes weights and nodes
+        law.learning = False
+        yield FROZEN, ellipse(config, config.task.duration)
+        law.learning = True
+    yield ELLIPSE, ellipse(config, config.task.duration)
+
+
+def _joined(parts: list[tuple[int, Recording]], config: Config) -> Recording:
+    """One recording, its segments in the order of their numbers."""
+    parts = sorted(parts, key=lambda part: part[0])
+    state = np.concatenate([part["state"] for _, part in parts])
+    series = {name: state[:, columns] for name, columns in STATE.items()}
+    for name, source in (("torque", "arm.torque"), ("position", "arm.position"), ("tip", "arm.tip")):
+        series[name] = np.concatenate([part[source][:, :2] for _, part in parts])
+    series["segment"] = np.concatenate([np.full(len(part.time), number) for number, part in parts])
+    images = {name: image for _, part in parts for name, image in part.images.items()}
+    return Recording(
+        {"time": np.arange(len(state)) * config.step, **series},
+        images=images,
+        steps=sum(part.steps for _, part in parts),
+        simulated=sum(part.simulated for _, part in parts),
+    )
+
+
+def _add_weights(
+    recording: Recording, parts: list[tuple[int, Recording]], weights: list[list[Array]], law: Any, config: Config
+) -> None:
+    """Frames ``settled`` and, of growing networks, ``weights`` (those of the Gaussians, over time) and ``centres``."""
+    if law.network is None:
+        return
+    histories = sorted(zip([number for number, _ in parts], weights), key=lambda item: item[0])
+    per_node = getattr(law.network.basis, "features_per_node", 1)
+    last = round(10.0 / (SNAPSHOT * config.step))
+    recording.frames["settled"] = pd.DataFrame(
+        [settled(history[-last:], per_node) for number, history in histories if number == ELLIPSE]
+    )
+    if not isinstance(law.network.basis, GrowingGaussians):
+        return
+    basis, rows = law.network.basis, []
+    for number, history in histories:
+        for k, snapshot in enumerate(history):
+            gaussians = np.full((basis.nodes, 2), np.nan)
+            gaussians[: len(snapshot) // per_node] = snapshot[::per_node]
+            rows.append([number, k * SNAPSHOT * config.step, *gaussians.T.ravel()])
+    names = [f"joint{joint}_node{node}" for joint in (1, 2) for node in range(1, basis.nodes + 1)]
+    recording.frames["weights"] = pd.DataFrame(rows, columns=["segment", "time", *names])
+    inputs = [f"{name}{joint}" for name in ("q", "dq", "alpha", "dalpha") for joint in (1, 2)]
+    recording.frames["centres"] = pd.DataFrame(basis.centres.copy(), columns=inputs)
+
+
+def settled(history: list[Array], per_node: int) -> dict[str, float]:
+    """Whether weights (features, outputs) recorded over whole periods have converged, and how many are large.
+
+    drift: change of the mean from the first to the second half; ripple: rms about the mean of the second half, both
+    over the norm of that mean. large, nodes: Gaussians whose weight of joint 1 exceeds a tenth of the largest, and all.
+    """
+    half = np.array([weights for weights in history if weights.shape == history[-1].shape])
+    first, second = half[: len(half) // 2], half[len(half) // 2 :]
+    mean = second.mean(axis=0)
+    size = np.linalg.norm(mean) or 1.0
+    return {
+        "drift": float(np.linalg.norm(mean - first.mean(axis=0)) / size) if len(first) else 0.0,
+        "ripple": float(np.sqrt(np.mean(np.sum((second - mean) ** 2, axis=(1, 2)))) / size),
+        "large": large(mean[::per_node, 0]),
+        "nodes": len(mean[::per_node]),
+        "global": float(np.abs(mean[1::per_node]).max() / (np.abs(mean[::per_node]).max() or 1.0))
+        if per_node == 3
+        else 0.0,
+    }
+
+
+def large(weights: Array) -> int:
+    """Number of weights above a tenth of the largest."""
+    size = np.abs(weights)
+    return int(np.sum(size > 0.1 * size.max())) if size.max() > 0 else 0
+
+
+def picture(world: World, position: Array) -> Any:
+    """The arm seen along the normal of its plane: (x, y) in [0, 2] x [-1, 1] m fills the picture."""
+    from dexrepro.physics.rendering import Camera
+
+    distance = 4.0
+    view = Camera((1.0, 0.0, 0.0), distance, 0.0, -89.99, 2 * math.degrees(math.atan(1.0 / distance)))
+    return world.render({"arm": position}, camera=view, size=(500, 500))

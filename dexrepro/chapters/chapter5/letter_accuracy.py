@@ -1,0 +1,272 @@
+"""How well DMP, DMP+ and IDMP with the same random kernels repeat a handwritten letter (Sect. 5.5.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter5 import letters
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.primitives import DMP, Demonstration, GaussianKernels, TruncatedKernels, extend
+
+FIGURES = {
+    "5.3": Figure(
+        "A handwritten A (dashed) and what DMP, DMP+ and IDMP make of it with the same random kernels, 5 above, 20 "
+        "below, for the draw with the median error of the DMP; as in the book. Right: mean squared error over draws of "
+        "the kernels (box: quartiles, whiskers: all draws).",
+        "With 5 and with 20 kernels the IDMP repeats the letter best, the DMP worst.",
+    ),
+    "5.A": Figure(
+        "Mean squared error of the IDMP against the number of added features (median and 10 to 90 % of the draws), "
+        "with DMP and DMP+ on the same kernels and on as many free parameters as the largest IDMP. Ours; the book does "
+        "not print how many features it adds.",
+        "With 20 kernels the IDMP needs about 35 added features to be better than the DMP+.",
+    ),
+}
+TABLES = {
+    "T5.A": "Mean squared error [cm^2] over random kernels: median, 90 % quantile, deviation from the goal afterwards",
+    "T5.B": "Share of the draws in which one method is better than another",
+    "T5.S": "Sensitivity of the order of methods to what the book does not print",
+}
+METHODS = {"dmp": "DMP", "dmp_plus": "DMP+", "idmp": "IDMP"}
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    hand, generator, rows, runs = rng("demonstration"), rng("kernels"), [], []
+    written = [letters.demonstration(config.hand.letter, config, hand) for _ in range(config.kernels.draws)]
+    for count in config.kernels.counts:
+        for draw, demonstration in enumerate(written):
+            # The target forcing with the printed sign of D v, Eq. (5.5), is that of the same path at negated velocity.
+            taught = replace(demonstration, velocity=config.training.damping_sign * demonstration.velocity)
+            for method, primitive in _learn(count, taught, config, generator).items():
+                errors, path = _errors(primitive, demonstration, config)
+                rows.append((count, draw, method, *errors))
+                runs.append((demonstration.position, path))
+    draws = pd.DataFrame(rows, columns=["kernels", "draw", "method", "mse", "after", "limit", "weight"])
+    return Recording(
+        frames={"draws": draws, "paths": _typical_paths(draws, runs, config)},
+        steps=len(rows) * config.dmp.samples,
+    )
+
+
+def _learn(count: int, taught: Demonstration, config: Config, rng: np.random.Generator) -> dict[str, DMP]:
+    """Every method on one draw of kernels; the baselines of equal size draw more kernels from the same law."""
+    largest, training = max(config.features.counts), config.training
+    kernels = letters.kernels(count, config, rng)
+    features = letters.features(kernels, largest, config, rng)
+    size = 2 * count + largest  # free parameters of the largest IDMP
+    same, half = letters.kernels(size, config, rng), letters.kernels(size // 2, config, rng)
+    base = _fit(kernels, taught, config)
+    learned = {"dmp": base, "dmp_plus": _fit(_truncated(kernels, config), taught, config, training.dmp_plus_estimator)}
+    if config.equal_size:
+        learned["dmp_local"] = _fit(kernels, taught, config, "lwr")
+        learned["dmp_equal"] = _fit(same, taught, config)
+        learned["dmp_plus_equal"] = _fit(_truncated(half, config), taught, config)
+    options = {"update": training.solution, **{key: training[key] for key in ("rest", "rcond", "ridge")}}
+    for m in config.features.counts:
+        learned[f"idmp{m}"] = extend(base, features.first(m), taught, **options)
+    return learned
+
+
+def _truncated(kernels: GaussianKernels, config: Config) -> TruncatedKernels:
+    return TruncatedKernels(kernels, config.dmp_plus.reach, config.dmp_plus.two_sided)
+
+
+def _fit(features: Any, taught: Demonstration, config: Config, estimator: Any = "least_squares") -> DMP:
+    scaling, training = letters.letter_scaling(config), config.training
+    options = {key: training[key] for key in ("rest", "rcond", "ridge")}
+    return DMP.fit(taught, features, letters.system(config), config.dmp.decay, scaling, estimator=estimator, **options)
+
+
+def _errors(primitive: DMP, demonstration: Demonstration, config: Config) -> tuple[tuple[Any, ...], Any]:
+    """Mean squared error, largest distance from the goal within T/2 after T, that at 10 T, largest weight; the path."""
+    count, duration = config.dmp.samples, config.dmp.duration
+    path = letters.rollout(primitive, config, horizon=1.5 * duration)
+    late = primitive.rollout(duration / 100, horizon=10 * duration).position[-1]
+    distance = np.linalg.norm(path[count - 1 :] - primitive.goal, axis=1)
+    error = letters.squared_error(path[:count], demonstration.position)
+    weight = np.abs(primitive.weights).max()
+    return (error, distance.max(), np.linalg.norm(late - primitive.goal), weight), path[:count]
+
+
+def _typical_paths(draws: pd.DataFrame, runs: list[Any], config: Config) -> pd.DataFrame:
+    """Letter and paths of the three methods for the draw whose DMP has the median error, every fourth sample."""
+    parts = []
+    for count in config.kernels.counts:
+        plain = draws[(draws.kernels == count) & (draws.method == "dmp")].sort_values("mse")
+        typical = plain.draw.iloc[len(plain) // 2]
+        for method in METHODS:
+            key = f"idmp{max(config.features.counts)}" if method == "idmp" else method
+            row = draws[(draws.kernels == count) & (draws.draw == typical) & (draws.method == key)]
+            (x_d, y_d), (x, y) = (path[::4].T for path in runs[row.index[0]])
+            columns = {
+                "kernels": count,
+                "method": method,
+                "mse": row.mse.iloc[0],
+                "x": x,
+                "y": y,
+                "x_d": x_d,
+                "y_d": y_d,
+            }
+            parts.append(pd.DataFrame(columns))
+    return pd.concat(parts, ignore_index=True)
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    draws, metrics = recording.frames["draws"], Metrics()
+    by_count = {}
+    for count in config.kernels.counts:
+        part = draws[draws.kernels == count]
+        errors = by_count[count] = part.pivot(index="draw", columns="method", values="mse")
+        best = f"idmp{max(config.features.counts)}"
+        for method in errors:
+            metrics[f"n{count}.{method}.mse"] = float(errors[method].median())
+            metrics[f"n{count}.{method}.mse_q90"] = float(errors[method].quantile(0.9))
+            if method.startswith("idmp"):
+                metrics[f"n{count}.{method}.beats_dmp_plus"] = _share(errors[method] < errors.dmp_plus)
+        for method in ("dmp", "dmp_plus", best):
+            chosen = part[part.method == method]
+            metrics[f"n{count}.{method}.after"] = float(chosen.after.median())
+            metrics[f"n{count}.{method}.limit"] = max(float(chosen.limit.max()), 1e-9)  # below is rounding
+        metrics[f"n{count}.dmp_plus.beats_dmp"] = _share(errors.dmp_plus < errors.dmp)
+        metrics[f"n{count}.ordered"] = _share((errors[best] < errors.dmp_plus) & (errors.dmp_plus < errors.dmp))
+        metrics[f"n{count}.dmp_plus.ratio"] = float((errors.dmp_plus / errors.dmp).median())
+        ratios = errors[best] / errors.dmp_plus
+        metrics[f"n{count}.{best}.ratio"] = float(ratios.median())
+        if config.equal_size:
+            metrics[f"n{count}.{best}.beats_dmp_equal"] = _share(errors[best] < errors.dmp_equal)
+            metrics[f"n{count}.{best}.beats_dmp_plus_equal"] = _share(errors[best] < errors.dmp_plus_equal)
+    few, many = (by_count[count] for count in config.kernels.counts)
+    for method in few:
+        metrics[f"{method}.improves"] = _share(many[method] < few[method])
+    return metrics
+
+
+def _share(holds: Any) -> float:
+    return float(np.mean(holds))
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """Whether the IDMP's median error falls with every step in m, and how far below the DMP+ it ends."""
+    default, result = metrics.get("default", {}), {}
+    for count in config.kernels.counts:
+        medians = [default.get(f"n{count}.idmp{m}.mse") for m in config.features.counts]
+        if all(value is not None for value in medians):
+            steps = [after / before for before, after in pairwise(medians)]  # type: ignore[operator]
+            result[f"largest_step_n{count}"] = max(steps)
+    return result
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    if "default" not in recordings:
+        return {}
+    recording, found = recordings["default"], metrics["default"]
+    return {"5.3": _draw_paths(recording, found, config), "5.A": _draw_features(recording, found, config)}
+
+
+def _draw_paths(recording: Recording, metrics: Metrics, config: Config) -> Any:
+    from dexrepro.report import style
+
+    lines = {"dmp": "plain", "dmp_plus": "rival", "idmp": "book"}
+    most, counts = max(config.features.counts), config.kernels.counts
+    figure, grid = style.subplots(2, 4, height=4.1, squeeze=False)
+    paths, draws = recording.frames["paths"], recording.frames["draws"]
+    letter = iter("abcdef")
+    for row, count in zip(grid, counts):
+        for axes, (method, name) in zip(row, METHODS.items()):
+            path = paths[(paths.kernels == count) & (paths.method == method)]
+            axes.plot(path.x, path.y, **style.LINES[lines[method]])
+            axes.plot(path.x_d, path.y_d, **style.LINES["reference"])
+            style.panel(axes, next(letter), f"{name}: {path.mse.iloc[0]:.1e} cm²")
+            axes.set(aspect="equal", xlim=(-0.5, 4.5), ylim=(-0.6, 4.6), xlabel="x [cm]")
+        row[0].set_ylabel(f"{count} kernels\ny [cm]")
+        names = ["dmp", "dmp_plus", f"idmp{most}"]
+        values = [draws[(draws.kernels == count) & (draws.method == name)].mse for name in names]
+        boxes = row[3].boxplot(values, whis=(0, 100), widths=0.6, patch_artist=True, medianprops={"color": "black"})
+        for box, method in zip(boxes["boxes"], METHODS):
+            box.set(facecolor=style.LINES[lines[method]]["color"], alpha=0.6, linewidth=0.6)
+        row[3].set(yscale="log", ylabel="MSE [cm²]", ylim=(1e-6, 5))
+        row[3].set_xticks([1, 2, 3], METHODS.values())
+        row[3].set_title(f"{config.kernels.draws} draws")
+    shares = " and ".join(f"{100 * metrics[f'n{count}.ordered']:.0f} %" for count in counts)  # type: ignore[operator]
+    style.title(figure, f"IDMP ({most} added features) beats DMP+, DMP+ beats DMP: in {shares} of the draws")
+    return figure
+
+
+def _draw_features(recording: Recording, metrics: Metrics, config: Config) -> Any:
+    from dexrepro.report import style
+
+    draws, added = recording.frames["draws"], config.features.counts
+    figure, axes = style.subplots(1, len(config.kernels.counts), height=2.5, sharey=True, squeeze=False)
+    for panel, count in zip(axes[0], config.kernels.counts):
+        part = draws[draws.kernels == count].pivot(index="draw", columns="method", values="mse")
+        errors = part[[f"idmp{m}" for m in added]]
+        style.band(panel, added, errors.quantile(0.1), errors.quantile(0.9))
+        panel.plot(added, errors.median(), marker="o", markersize=3, label="IDMP", **style.LINES["book"])
+        size = 2 * count + max(added)
+        for method, name, line in (
+            ("dmp", "DMP, same kernels", "plain"),
+            ("dmp_plus", "DMP+, same kernels", "rival"),
+            ("dmp_equal", f"DMP, {size} weights", "extra2"),
+            ("dmp_plus_equal", f"DMP+, {size} weights", "extra1"),
+        ):
+            panel.axhline(part[method].median(), label=name, **style.LINES[line])
+        panel.set(yscale="log", xlabel="Added features m [-]")
+        panel.set_title(f"{count} kernels")
+        panel.legend(fontsize=6, ncols=2, loc="upper right")
+    axes[0, 0].set(ylabel="MSE [cm²]", ylim=(5e-6, 30))
+    last = config.kernels.counts[-1]
+    better = [m for m in added if (metrics[f"n{last}.idmp{m}.beats_dmp_plus"] or 0) > 0.5]
+    text = f"With {last} kernels, {min(better)} added features beat the DMP+" if better else "The DMP+ stays ahead"
+    style.title(figure, f"{text}; one of equal size does as well")
+    return figure
+
+
+def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    tables = {}
+    if "default" in recordings:
+        tables["T5.A"] = _errors_table(recordings["default"].frames["draws"])
+        tables["T5.B"] = _shares_table(metrics["default"], config)
+    columns = ("dmp_plus.beats_dmp", "idmp30.beats_dmp_plus", "idmp60.beats_dmp_plus", "idmp60.after", "ordered")
+    rows = [
+        {"variant": case, "kernels": count, **{column: values.get(f"n{count}.{column}") for column in columns}}
+        for case, values in metrics.items()
+        if case in recordings
+        for count in config.kernels.counts
+    ]
+    tables["T5.S"] = pd.DataFrame(rows)
+    return tables
+
+
+def _errors_table(draws: pd.DataFrame) -> pd.DataFrame:
+    groups = draws.groupby(["kernels", "method"], sort=False)
+    quantile = groups.mse.quantile(0.9).rename("90 % quantile [cm^2]")
+    return pd.concat(
+        [
+            groups.mse.median().rename("median MSE [cm^2]"),
+            quantile,
+            groups.after.median().rename("median distance from goal after T [cm]"),
+            groups.weight.median().map("{:.0e}".format).rename("largest weight (median)"),
+        ],
+        axis=1,
+    ).reset_index()
+
+
+def _shares_table(metrics: Metrics, config: Config) -> pd.DataFrame:
+    best = f"idmp{max(config.features.counts)}"
+    names = {
+        "dmp_plus.beats_dmp": "DMP+ better than DMP",
+        **{f"idmp{m}.beats_dmp_plus": f"IDMP, m = {m}, better than DMP+" for m in config.features.counts},
+        "ordered": "IDMP better than DMP+ better than DMP",
+        f"{best}.beats_dmp_equal": "IDMP better than a DMP of equal size",
+        f"{best}.beats_dmp_plus_equal": "IDMP better than a DMP+ of equal size",
+    }
+    return pd.DataFrame(
+        {"comparison": text, **{f"{n} kernels": metrics.get(f"n{n}.{key}") for n in config.kernels.counts}}
+        for key, text in names.items()
+    )

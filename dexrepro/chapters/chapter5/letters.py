@@ -1,0 +1,60 @@
+"""Demonstrated letters and random kernels, as the learning experiments of the chapter share them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dexrepro.experiment import Config
+from dexrepro.humans.handwriting import write
+from dexrepro.primitives import DMP, Demonstration, ExtendedKernels, GaussianKernels, Scaling, SpringDamper
+
+
+def demonstration(letter: str, config: Config, rng: np.random.Generator) -> Demonstration:
+    """One handwritten letter [cm]; the size is moved by the configured perturbation."""
+    hand = config.hand
+    time = np.linspace(0.0, config.dmp.duration, config.dmp.samples)
+    size = hand.size * (1 + config.perturbation)
+    return Demonstration.of(time, write(letter, time, size, hand.jitter, hand.tremor, hand.cutoff, rng))
+
+
+def letter_scaling(config: Config, dimensions: int = 2) -> Scaling:
+    """A = the letter's size on every axis: letters start and end at nearly the same height."""
+    return Scaling(np.zeros(dimensions, dtype=bool), np.full(dimensions, float(config.hand.size)))
+
+
+def system(config: Config) -> SpringDamper:
+    return SpringDamper(config.dmp.stiffness, config.dmp.damping)
+
+
+def kernels(count: int, config: Config, rng: np.random.Generator | None) -> GaussianKernels:
+    """Equally spaced kernels, or, with a generator, random centres and widths."""
+    settings = config.kernels
+    if rng is None:
+        return GaussianKernels.with_widths(np.linspace(0, 1, count), config.dmp.decay, settings.width / count)
+    places, (low, high) = np.sort(rng.uniform(size=count)), settings.width_range
+    widths = rng.uniform(low, high, size=count) / count
+    if settings.placement == "random_phase":
+        last = np.exp(-config.dmp.decay)
+        places = np.sort(-np.log(last + (1 - last) * places) / config.dmp.decay)
+    return GaussianKernels.with_widths(places, config.dmp.decay, widths)
+
+
+def features(initial: GaussianKernels, count: int, config: Config, rng: np.random.Generator, **options: Any) -> Any:
+    settings = config.features
+    return ExtendedKernels.draw(initial, count, rng, settings.weight_std, settings.bias_range, **options)
+
+
+def squared_error(path: Any, wanted: Any) -> float:
+    """Mean squared distance [cm^2] of two paths (N, d)."""
+    return float(np.mean(np.sum((path - wanted) ** 2, axis=-1)))
+
+
+def rms_distance(path: Any, wanted: Any) -> float:
+    return squared_error(path, wanted) ** 0.5
+
+
+def rollout(primitive: DMP, config: Config, **options: Any) -> Any:
+    """Path (..., N, d) at the demonstration's instants."""
+    return primitive.rollout(config.dmp.duration / (config.dmp.samples - 1), **options).position

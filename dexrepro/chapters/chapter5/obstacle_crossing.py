@@ -1,0 +1,143 @@
+"""A skill that crosses one block grows to cross two and three, and reaches nine goals (Sect. 5.5.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter5 import crossing, letters
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.humans.crossing import clearance
+
+FIGURES = {
+    "5.8": Figure(
+        "(a) Demonstrations over one block (grey) and the skill that a DMP learns; (b) the skill changes to two and "
+        "three blocks as features are added, thin: every five features; (c, d) the learned skills (thick) and their "
+        "generalisations to nine goals (orange), in space and from the side, with the smallest distance of the paths "
+        "from the obstacle. Synthetic demonstrations; the book shows recorded ones.",
+        "The skill rises from one to three blocks and reaches all nine goals without touching the obstacle.",
+    ),
+    "5.C": Figure(
+        "How much the path changes with every five added features, from one block to two and from two to three; all "
+        "draws (thin) and their median. Ours.",
+        "The changes shrink to about a hundredth of the first.",
+    ),
+}
+TABLES = {
+    "T5.E": "Clearance [cm] of the generalised paths, median of the draws",
+    "T5.F": "Sensitivity of the crossing to amplitude and demonstration",
+}
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    hand, generator = rng("demonstration"), rng("features")
+    rows, changes, reached, kept = [], [], [], None
+    for draw in range(config.features.draws):
+        shown = {blocks: crossing.repetitions(blocks, config, hand) for blocks in crossing.HEIGHTS}
+        skills = crossing.learn({b: crossing.averaged(paths, config) for b, paths in shown.items()}, config, generator)
+        rows += _quality(draw, skills, config)
+        changes += _changes(draw, skills, config)
+        reached += _generalisations(draw, skills, config)
+        kept = kept or _paths(shown, skills, config)
+    return Recording(
+        frames={
+            "quality": pd.DataFrame(rows, columns=["draw", "skill", "blocks", "clearance", "rms"]),
+            "changes": pd.DataFrame(changes, columns=["draw", "blocks", "m", "change"]),
+            "goals": pd.DataFrame(reached, columns=["draw", "blocks", "goal", "x", "y", "clearance", "end_error"]),
+            "paths": pd.concat(kept or [], ignore_index=True),
+        },
+        steps=config.dmp.samples * (len(rows) + len(changes) + len(reached)),
+    )
+
+
+def _quality(draw: int, skills: crossing.Skills, config: Config) -> list[tuple[Any, ...]]:
+    """Clearance of every skill over every stack, and its distance from the demonstration of its own."""
+    result = []
+    for skill, primitive in skills.skills.items():
+        path = letters.rollout(primitive, config)
+        rms = letters.rms_distance(path, skills.demonstrations[skill].position)
+        result += [(draw, skill, blocks, clearance(path, blocks).min(), rms) for blocks in crossing.HEIGHTS]
+    return result
+
+
+def _changes(draw: int, skills: crossing.Skills, config: Config) -> list[tuple[Any, ...]]:
+    counts, result = (0, *config.features.counts), []
+    for blocks in crossing.HEIGHTS[1:]:
+        paths = [letters.rollout(skills.steps[blocks, m], config) for m in counts]
+        result += [
+            (draw, blocks, m, letters.rms_distance(after, before))
+            for m, before, after in zip(counts[1:], paths, paths[1:])
+        ]
+    return result
+
+
+def _generalisations(draw: int, skills: crossing.Skills, config: Config) -> list[tuple[Any, ...]]:
+    targets, result = crossing.goals(config), []
+    for blocks in crossing.HEIGHTS[1:]:
+        paths = letters.rollout(skills.skills[blocks], config, goal=targets)
+        distances, ends = clearance(paths, blocks).min(axis=1), np.linalg.norm(paths[:, -1] - targets, axis=1)
+        for k, (goal, distance, end) in enumerate(zip(targets, distances, ends)):
+            result.append((draw, blocks, k, goal[0], goal[1], distance, end))
+    return result
+
+
+def _paths(shown: dict[int, list[Any]], skills: crossing.Skills, config: Config) -> list[pd.DataFrame]:
+    """What the figure shows: demonstrations, skills with their steps, generalisations; every fifth point."""
+    parts = [_frame(path, kind="demonstration", blocks=1, index=k) for k, path in enumerate(shown[1])]
+    parts += [_frame(letters.rollout(p, config), kind="skill", blocks=b, index=0) for b, p in skills.skills.items()]
+    parts += [_frame(letters.rollout(p, config), kind="step", blocks=b, index=m) for (b, m), p in skills.steps.items()]
+    for blocks in crossing.HEIGHTS[1:]:
+        paths = letters.rollout(skills.skills[blocks], config, goal=crossing.goals(config))
+        parts += [_frame(path, kind="goal", blocks=blocks, index=k) for k, path in enumerate(paths)]
+    return parts
+
+
+def _frame(path: Any, **columns: Any) -> pd.DataFrame:
+    return pd.DataFrame({**columns, **dict(zip("xyz", path[::5].T))})
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    quality, reached = recording.frames["quality"], recording.frames["goals"]
+    clear = quality.groupby(["skill", "blocks"]).clearance.median()
+    metrics: Metrics = {f"skill1.over{b}": float(clear[1, b]) for b in crossing.HEIGHTS}
+    changes = recording.frames["changes"].pivot(index=["draw", "blocks"], columns="m", values="change")
+    for blocks in crossing.HEIGHTS[1:]:
+        own = quality[(quality.skill == blocks) & (quality.blocks == blocks)]
+        metrics[f"skill{blocks}.clearance"] = float(own.clearance.min())
+        metrics[f"skill{blocks}.rms"] = float(own.rms.median())
+        steps = changes.xs(blocks, level="blocks").to_numpy()
+        metrics[f"skill{blocks}.last_change"] = float((steps[:, -1] / steps[:, 0]).max())
+        metrics[f"skill{blocks}.shrinks_always"] = float(np.mean(np.diff(steps, axis=1).max(axis=1) <= 0))
+        part = reached[reached.blocks == blocks]
+        metrics[f"goals{blocks}.clearance"] = float(part.clearance.min())
+        metrics[f"goals{blocks}.free"] = float(np.mean(part.clearance > 0))
+        metrics[f"goals{blocks}.end_error"] = float(part.end_error.max())
+    return metrics
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    from dexrepro.chapters.chapter5 import crossing_figures
+
+    if "default" not in recordings:
+        return {}
+    recording, found = recordings["default"], metrics["default"]
+    return {
+        "5.8": crossing_figures.crossings(recording, found, config),
+        "5.C": crossing_figures.changes(recording, found, config),
+    }
+
+
+def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    tables = {}
+    if "default" in recordings:
+        reached = recordings["default"].frames["goals"]
+        tables["T5.E"] = reached.groupby(["blocks", "x", "y"]).clearance.median().unstack("y").reset_index()
+    names = [f"{kind}.{name}" for kind in ("goals2", "goals3") for name in ("clearance", "free", "end_error")]
+    tables["T5.F"] = pd.DataFrame(
+        {"variant": case, **{name: values.get(name) for name in ("skill2.last_change", *names)}}
+        for case, values in metrics.items()
+    )
+    return tables

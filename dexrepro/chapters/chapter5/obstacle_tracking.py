@@ -1,0 +1,167 @@
+"""The arm follows the crossing skills to nine goals without touching the obstacle (Sect. 5.5.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter5 import crossing, pen
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.humans.crossing import clearance, obstacle_boxes
+from dexrepro.physics.rendering import Camera
+from dexrepro.robots.arm import Pose, Shape
+
+FIGURES = {
+    "5.7": Figure(
+        "The simulated scene: cubes of 2 cm with a lip on top, start (green), nine goals (orange) and the arm at its "
+        "start (rendered; the book shows a photograph).",
+        "An arm in front of a stack of cubes with nine goals behind it.",
+    ),
+    "5.9": Figure(
+        "The arm crosses two blocks (above) and three (below) to the central goal, four instants each (rendered from "
+        "the simulated run; the book shows photographs).",
+        "The arm lifts its pen over the stack and reaches the goal behind it.",
+    ),
+    "5.F": Figure(
+        "Share of the bound that the joint errors use (all 18 runs) and smallest distance of the tracked tip from the "
+        "obstacle for every goal. Ours.",
+        "All 18 crossings stay inside the bound and clear of the obstacle.",
+    ),
+}
+TABLES = {"T5.J": "Tracked crossings: clearance [cm], bound used, tip error [mm], distance from the goal [mm]"}
+RATE = 100.0
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    hand = rng("demonstration")
+    shown = {b: crossing.averaged(crossing.repetitions(b, config, hand), config) for b in crossing.HEIGHTS}
+    skill = crossing.learn(shown, config, rng("features")).skills[config.blocks]
+    duration, goal = config.arm.duration, crossing.goals(config)[config.goal]
+    path = skill.rollout(config.arm.step, horizon=duration, time_constant=duration, goal=goal).position
+    target = pen.reference(pen.over_table(path), config.arm.step)
+    nominal = pen.model(config)
+    learner = pen.network(config, pen.node_centres(config, target, config.network.nodes, rng("nodes")))
+    recording = pen.track(config, target, pen.law(config, nominal, learner), nominal)
+    if config.picture:
+        recording.images.update(_film(recording, config))
+    return recording
+
+
+def scene(config: Config) -> Any:
+    """Arm, table, obstacle, start and goals, without a law."""
+    world = pen.world(config, np.zeros(3))
+    world.add_box(
+        "table", (0.3, 0.4, 0.01), (0.15, 0.0, pen.HEIGHT - 0.006), colour=(0.8, 0.82, 0.85, 1), collides=False
+    )
+    for k, (low, high) in enumerate(obstacle_boxes(config.blocks)):
+        corners = pen.over_table([low, high])
+        size, centre = np.abs(corners[1] - corners[0]), corners.mean(axis=0)
+        world.add_box(f"obstacle{k}", size, centre, colour=(0.85, 0.75, 0.55, 1), collides=False)
+    places = [
+        (np.array([-6.0, 0.0, 0.0]), (0.0, 0.62, 0.45, 1)),
+        *((g, (0.9, 0.62, 0, 1)) for g in crossing.goals(config)),
+    ]
+    for k, (place, colour) in enumerate(places):
+        disc = Shape("cylinder", (0.004, 0.002), Pose(tuple(pen.over_table(place).tolist())), colour)
+        world.add_body(f"mark{k}", [disc], (0, 0, 0), collides=False)
+    return world
+
+
+CAMERA = Camera(target=(0.12, -0.01, -0.045), distance=0.42, yaw=68.0, pitch=-22.0, field_of_view=40.0)
+
+
+def _film(recording: Recording, config: Config) -> dict[str, Any]:
+    """Pictures of the run at the configured instants."""
+    with scene(config) as world:
+        return {
+            f"at{k}": world.snapshot(recording, time, camera=CAMERA, size=(640, 520))
+            for k, time in enumerate(config.film)
+        }
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    tip = pen.from_table(recording["arm.tip"])
+    end = tip[-1] - crossing.goals(config)[config.goal]
+    quality = pen.quality(recording, config)
+    return {
+        "clearance": float(clearance(tip, config.blocks).min()),
+        "end_error": 10 * float(np.linalg.norm(end)),
+        **{name: quality[name] for name in ("bound_use", "tip_rms", "outside")},
+    }
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """The worst of the 18 crossings."""
+    runs = [values for case, values in metrics.items() if case.startswith(("two_", "three_"))]
+    if not runs:
+        return {}
+    return {
+        "least_clearance": min(values["clearance"] for values in runs),  # type: ignore[type-var]
+        "largest_bound_use": max(values["bound_use"] for values in runs),  # type: ignore[type-var]
+        "largest_tip_rms": max(values["tip_rms"] for values in runs),  # type: ignore[type-var]
+        "largest_end_error": max(values["end_error"] for values in runs),  # type: ignore[type-var]
+    }
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    from dexrepro.report import style
+
+    figures = {}
+    if {"film2", "film3"} <= set(recordings):
+        figure, axes = style.plt.subplots(1, 1, figsize=(style.ONE_COLUMN * 1.3, 3.3))
+        axes.imshow(recordings["film3"].images["at0"])
+        axes.set_axis_off()
+        style.title(figure, "The arm, three cubes with their lip, and nine goals")
+        figures["5.7"] = figure
+        figures["5.9"] = _filmstrip(recordings, config)
+    if sum(case.startswith(("two_", "three_")) for case in recordings) == 18:
+        figures["5.F"] = _draw_runs(recordings, metrics, config)
+    return figures
+
+
+def _filmstrip(recordings: Mapping[str, Recording], config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, grid = style.subplots(2, len(config.film), height=3.2)
+    for row, case in zip(grid, ("film2", "film3")):
+        for k, (axes, time) in enumerate(zip(row, config.film)):
+            axes.imshow(recordings[case].images[f"at{k}"])
+            axes.set_axis_off()
+            axes.set_title(f"{case[-1]} blocks, {time:g} s")
+    style.title(figure, "The arm carries its pen over two and three blocks")
+    return figure
+
+
+def _draw_runs(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, (left, right) = style.subplots(1, 2, height=2.3, width=style.TWO_COLUMNS)
+    places = crossing.goals(config)
+    for prefix, colour, marker, shift in (("two_", style.EXTRA[0], "o", -0.15), ("three_", style.BOOK, "s", 0.15)):
+        for k in range(len(places)):
+            recording = recordings[f"{prefix}{k}"]
+            usage = pen.bound_use(recording, config)
+            left.plot(recording.time, usage, color=colour, linewidth=0.5)
+        values = [metrics[f"{prefix}{k}"]["clearance"] for k in range(len(places))]
+        right.plot(np.arange(9) + shift, values, marker, ms=4, color=colour, label=f"{prefix[:-1]} blocks")
+    left.axhline(1, **style.LINES["reference"])
+    left.set(yscale="log", ylim=(1e-4, 2), xlabel="Time [s]", ylabel="Largest share\nof the bound [-]")
+    right.axhline(0, **style.LINES["reference"])
+    right.set_xticks(range(9), [f"{x:g}\n{y:g}" for x, y, _ in places])
+    right.set(xlabel="Goal x, y [cm]", ylabel="Clearance of the tip [cm]", ylim=(-0.1, 1.6))
+    right.legend()
+    style.title(figure, "All 18 crossings stay inside the bound and clear of the obstacle")
+    return figure
+
+
+def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    names = ("clearance", "bound_use", "tip_rms", "end_error")
+    rows = [
+        {"blocks": 2 if case.startswith("two") else 3, "goal": case.split("_")[1], **{n: values[n] for n in names}}
+        for case, values in metrics.items()
+        if case.startswith(("two_", "three_"))
+    ]
+    return {"T5.J": pd.DataFrame(rows)}

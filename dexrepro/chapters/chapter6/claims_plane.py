@@ -1,0 +1,246 @@
+"""Claims of Chapter 6 about the planar map and the theory behind it."""
+
+from __future__ import annotations
+
+from dexrepro.experiment import Claim, every, greater, less, within
+
+SKILL, LAW, CASES, ANATOMY, OUT = "planar_skill", "planar_constraint", "constraint_cases", "barrier_anatomy", "keep_out"
+FOUR = ("asymmetric_inside", "symmetric_inside", "symmetric_outside", "asymmetric_outside")
+
+PLANE = (
+    Claim(
+        "C6.01",
+        "6.2a",
+        "The demonstrations are cut into the two sub-skills.",
+        less(f"{SKILL}.book.segmentation_error_max", 0.3),
+        where="6.4.1",
+        note="A change point of a library replaces the book's BP-AR-HMM; cut at the smallest speed it holds too.",
+    ),
+    Claim(
+        "C6.02",
+        "6.2a",
+        "The learned path collides with the new block but not with the old obstacles.",
+        every(less(f"{SKILL}.book.clearance_new_max", 0.0), greater(f"{SKILL}.book.clearance_old_min", 0.0)),
+        where="6.4.1",
+        by_construction="the block was placed across the demonstrations",
+    ),
+    Claim(
+        "C6.03",
+        "6.2a",
+        "The new block concerns the second sub-skill alone.",
+        greater(f"{SKILL}.book.clearance_first_new_min", 1.0),
+        where="6.4.1",
+        by_construction="the block was placed across the demonstrations",
+    ),
+    Claim(
+        "C6.04",
+        "6.2b",
+        "The interpolated reference clears all obstacles by more than the margin and keeps most of the learned path.",
+        every(greater(f"{SKILL}.book.clearance_reference_min", 0.5), greater(f"{SKILL}.book.kept_share_min", 0.5)),
+        where="6.4.1",
+    ),
+    Claim(
+        "C6.05",
+        "6.2c",
+        "The reference by extended primitives crosses the original obstacles.",
+        every(
+            greater(f"{SKILL}.book.inside_share_extended_min", 0.0),
+            less(f"{SKILL}.book.clearance_extended_1_max", 0.0),
+            less(f"{SKILL}.book.clearance_extended_2_max", 0.0),
+        ),
+        where="6.4.1",
+        note="It depends on the intervals: cut inside of sub-skill 2, extended primitives clear everything (C6.32).",
+    ),
+    Claim(
+        "C6.32",
+        "6.2c",
+        "With intervals cut inside of sub-skill 2, extended primitives clear all obstacles.",
+        every(
+            greater(f"{SKILL}.local_intervals.clearance_extended_1_min", 0.0),
+            greater(f"{SKILL}.local_intervals.clearance_extended_2_min", 0.0),
+        ),
+        source="ours",
+        where="6.3.1",
+    ),
+    Claim(
+        "C6.06",
+        "6.2d",
+        "The path stays within 0.5 of the reference.",
+        every(*(less(f"{LAW}.{law}.e_share", 1.0) for law in ("consistent", "printed", "feedforward"))),
+        where="6.4.1, (6.23)",
+        note="With tau = the segment's duration; with tau = 1 s only the consistent law or a projection keeps it.",
+    ),
+    Claim(
+        "C6.07",
+        "6.2d",
+        "The distance to the reference is largest at the arc and vanishes quickly after it.",
+        every(
+            *(greater(f"{LAW}.{law}.peak_in_arc", 0.99) for law in ("printed", "feedforward")),
+            *(less(f"{LAW}.{law}.settle_after_arc", 0.6) for law in ("printed", "feedforward")),
+        ),
+        where="6.4.1",
+        note="Void for the consistent law, which never leaves the reference.",
+    ),
+    Claim(
+        "C6.09",
+        "6.2d",
+        "The constraint (6.7) is never violated (consistent law).",
+        every(
+            *(less(f"{LAW}.{case}.violated_groups", 0.5) for case in ("consistent", "tau1_consistent")),
+        ),
+        where="6.3.3",
+    ),
+    Claim(
+        "C6.33",
+        "6.2d",
+        "The constraint (6.7) is never violated (law as printed in (6.15), and with the recorded acceleration).",
+        every(
+            *(
+                less(f"{LAW}.{case}.violated_groups", 0.5)
+                for case in (
+                    "printed",
+                    "feedforward",
+                    "narrow_printed",
+                    "narrow_feedforward",
+                    "tau1_printed",
+                    "tau1_feedforward",
+                )
+            ),
+        ),
+        where="6.3.3",
+        note="Kept at h = 0.5 with tau = duration, stepped over at half the margin and with tau = 1 s.",
+    ),
+    Claim(
+        "C6.34",
+        "6.2d",
+        "With the discrete projection the constraint is kept by every reading, margin and time constant tried.",
+        every(
+            *(
+                less(f"{LAW}.{case}.violated_groups", 0.5)
+                for case in (
+                    "narrow_printed_projected",
+                    "narrow_feedforward_projected",
+                    "tau1_printed_projected",
+                    "tau1_feedforward_projected",
+                )
+            ),
+        ),
+        source="ours",
+        where="6.3.3",
+        by_construction="the projection puts a step beyond the barrier back",
+    ),
+    Claim(
+        "C6.12",
+        "6.2d",
+        "The constrained path converges to the goal.",
+        every(*(less(f"{LAW}.{law}.goal_error", 0.02) for law in ("consistent", "printed", "feedforward"))),
+        where="6.3.3",
+        note="For constraints that keep inside of a tube; the outside cases do not arrive, see C6.35.",
+    ),
+    Claim(
+        "C6.14",
+        "6.2d",
+        "The extra term does not influence the learned skill: the weights stay as they are.",
+        every(*(less(f"{LAW}.{law}.weights_changed", 1e-12) for law in ("consistent", "printed", "feedforward"))),
+        where="6.5",
+        by_construction="the extra term acts on the movement, nothing is learned anew",
+        note="What the skill still contributes to the movement is another matter, see C6.36.",
+    ),
+    Claim(
+        "C6.36",
+        "6.2d",
+        "The constrained movement still depends on the learned weights under every reading of the law.",
+        every(*(greater(f"{LAW}.{law}.weight_effect", 0.01) for law in ("consistent", "printed", "feedforward"))),
+        source="ours",
+        where="6.5",
+        note="Not under the consistent law, the one that the proof holds for: it cancels the primitive altogether.",
+    ),
+    Claim(
+        "C6.15",
+        "6.2d",
+        "The constrained path clears all obstacles.",
+        every(*(greater(f"{LAW}.{law}.clearance", 0.0) for law in ("consistent", "printed", "feedforward"))),
+        where="6.4.1",
+    ),
+    Claim(
+        "C6.37",
+        "6.2d",
+        "The barrier makes no difference to the largest distance on the map (weight 1, tau = duration).",
+        less(f"{LAW}.barrier_effect", 1e-3),
+        source="ours",
+        where="(6.9)",
+        note="0.3028 cm with and without: the tracking gains do the work.",
+    ),
+    Claim(
+        "C6.38",
+        "6.2d",
+        "With tau = 1 s the tracking gains alone leave the tube; a barrier weighted by H^2 keeps it.",
+        every(
+            greater(f"{LAW}.tau1_no_barrier.e_share", 1.0),
+            less(f"{LAW}.tau1_feedforward_h2.e_share", 1.0),
+            less(f"{LAW}.tau1_feedforward_h2.violated_groups", 0.5),
+        ),
+        source="ours",
+        where="(6.9)",
+    ),
+)
+
+THEORY = (
+    Claim(
+        "C6.08",
+        "T6.2",
+        "V^c never increases (consistent law, all four cases).",
+        every(
+            *(less(f"{CASES}.{case}.rising_states", 0.5) for case in FOUR),
+            *(less(f"{CASES}.{case}.v_rises", 0.5) for case in FOUR),
+        ),
+        printed=less(f"{CASES}.asymmetric_outside_printed.rising_states", 0.5),
+        where="(6.21), Table 6.2",
+        note="Three cases hold as printed; the second asymmetric one needs the factor z_1 that (6.17) lacks.",
+    ),
+    Claim(
+        "C6.39",
+        "6.2d",
+        "V^c never increases (law as printed in (6.15), and with the recorded acceleration).",
+        every(*(less(f"{LAW}.{law}.v_rises", 0.5) for law in ("printed", "feedforward"))),
+        where="(6.21)",
+        note="Neither of these two readings fulfils the assumption of the proof.",
+    ),
+    Claim(
+        "C6.10",
+        "6.B",
+        "A larger k_2 gives a larger tracking error.",
+        every(*(greater(f"{ANATOMY}.{law}.k2_slope", 0.0) for law in ("printed", "feedforward"))),
+        where="Remark 6.6",
+        note="The authors call it not conclusive; here the error falls with k_2 under every law and time constant.",
+    ),
+    Claim(
+        "C6.11",
+        "6.2a",
+        "alpha_z and beta_z = alpha_z / 4 make (6.1) critically damped.",
+        within(f"{SKILL}.book.damping_ratio", 1 - 1e-9, 1 + 1e-9),
+        where="Remark 6.6",
+    ),
+    Claim(
+        "C6.13",
+        "T6.2",
+        "One expression of the extra term serves all constraint cases.",
+        every(*(less(f"{CASES}.{case}.worst_rate", 0.0) for case in FOUR)),
+        where="Remark 6.5",
+        by_construction="one function computes it for all cases; only the pull and the share of the barrier differ",
+    ),
+    Claim(
+        "C6.35",
+        "6.C",
+        "With the outside constraints of Table 6.2 about an obstacle, the path converges to the goal (Remark 6.2).",
+        every(
+            *(
+                less(f"{OUT}.still_{law}.goal_error", 0.2)
+                for law in ("consistent", "printed", "feedforward", "printed_h2", "feedforward_h2")
+            ),
+        ),
+        where="Remark 6.2, 6.3.3",
+        note="Its Lyapunov function has its infimum at infinity: the error grows like sqrt(t), and the path "
+        "stops before the obstacle. The safety filter arrives.",
+    ),
+)

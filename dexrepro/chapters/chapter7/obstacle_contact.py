@@ -1,0 +1,157 @@
+"""The arm meets a stack that is taller than it was told, and is pushed: what variable impedance changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter7 import desk
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.humans.reaching import Obstacle
+from dexrepro.physics.elements import Push
+
+FIGURES = {
+    "7.D": Figure(
+        "The arm passes forward over a stack that is taller than planned, so that its end touches the soft top, and "
+        "is pushed sideways with 0.5 N before the obstacle, behind it and at rest (simulated; not in the book). (a) "
+        "Contact force. (b) Sideways deviation caused by the push before the obstacle. (c) Deviation under the three "
+        "pushes without estimation; dots: with it, all below 0.03 mm.",
+        "With time-delay estimation neither contact force nor deviation depends on the impedance; without it they do.",
+    ),
+}
+TABLES = {"T7.D": "Contact and pushes under constant and variable impedance"}
+RATE = 200.0
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    task, reference = desk.planned(config)
+    with desk.build(config, reference.tip[0], contacts=True) as world:
+        stack = Obstacle(task.obstacle.position, task.obstacle.height + config.rise, task.obstacle.side)
+        desk.add_stack(
+            world,
+            stack,
+            contactStiffness=config.contact.stiffness,
+            contactDamping=config.contact.damping,
+            friction=config.contact.friction,
+        )
+        world.add(Push("arm", lambda t: (0.0, config.push_force if pushed(config, t) else 0.0, 0.0)))
+        probes = {"contact": lambda: world.contact_force("arm", "stack")}
+        recording = desk.run(config, reference, world, probes=probes)
+    recording.series["predicted"] = np.full(len(recording.time), predicted_deviation(recording, config))
+    return recording
+
+
+def pushed(config: Config, time: float) -> bool:
+    return any(start <= time < end for start, end in config.pushes.values())
+
+
+def predicted_deviation(recording: Recording, config: Config) -> float:
+    """Deviation [mm] J (K k)^-1 J^T F of the last posture under the push without estimation, friction left out."""
+    angles, nudge = recording["reference"][-1], 1e-6
+    steps = nudge * np.eye(3)
+    jacobian = (desk.forward(angles + steps) - desk.forward(angles - steps)).T / (2 * nudge)
+    impedance = config.law(_NoModel()).impedance(recording["stiffness"][-1], np.zeros(3))
+    compliance = jacobian @ np.diag(1 / (impedance * config.error_slope)) @ jacobian.T
+    return float(1e3 * np.linalg.norm(compliance @ (0.0, config.push_force, 0.0)))
+
+
+class _NoModel:
+    """Stands in where only a law's impedance is asked for."""
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    force = recording["contact"]
+    touching = force > 1e-3
+    free = recording["arm.tip"] - recording["planned"]
+    deviation = {}
+    for name, (start, end) in config.pushes.items():
+        before = free[np.searchsorted(recording.time, start) - 1]
+        during = recording.between(start, min(end, recording.time[-1]))
+        deviation[f"{name}_push"] = 1e3 * float(np.linalg.norm(free[during] - before, axis=1).max())
+    last = 1e3 * float(np.linalg.norm(free[-1] - free[np.searchsorted(recording.time, config.pushes["rest"][0]) - 1]))
+    return {
+        **deviation,
+        "static_deviation": last,
+        "predicted_deviation": float(recording["predicted"][0]),
+        "compliance_ratio": last / float(recording["predicted"][0]),
+        "contact_peak": float(force.max()),
+        "contact_impulse": float(force.sum() * config.control_period),
+        "contact_time": float(touching.sum() * config.control_period),
+        "rms_error": float(np.sqrt(np.mean(desk.tip_error(recording) ** 2))),
+        "largest_torque": float(np.abs(recording["arm.torque"]).max()),
+    }
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """Relative spread of the peak contact force over the impedances, with and without estimation."""
+    peaks = {
+        "estimated": [m["contact_peak"] or 0.0 for case, m in metrics.items() if not case.endswith("_plain")],
+        "plain": [m["contact_peak"] or 0.0 for case, m in metrics.items() if case.endswith("_plain")],
+    }
+    return {f"{name}_spread": float(np.ptp(values) / np.mean(values)) for name, values in peaks.items() if values}
+
+
+NAMES = {"muscle": "muscle", "low": "constant, smallest", "mean": "constant, mean", "high": "constant, largest"}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+    if not {"muscle", "low", "muscle_plain", "low_plain"} <= set(recordings):
+        return {}
+    from dexrepro.report import style
+
+    figure, (contact, push, bars) = style.subplots(1, 3, height=2.7)
+    lines = {"muscle": ("book", "muscle"), "low": ("extra1", "constant low"),
+             "muscle_plain": ("rival", "muscle, no estimation"), 
+             "low_plain": ("plain", "low, no estimation")}  # fmt: skip
+    start, end = config.pushes.before
+    for case, (line, label) in lines.items():
+        recording = recordings[case]
+        contact.plot(recording.time, recording["contact"], label=label, **style.LINES[line])
+        window = recording.between(start - 0.1, end + 0.3)
+        free = 1e3 * (recording["arm.tip"] - recording["planned"])[:, 1]
+        push.plot(recording.time[window], free[window] - free[window][0], **style.LINES[line])
+    contact.set(xlabel="Time [s]", ylabel="Contact force [N]", xlim=(2.8, 4.2), ylim=(0, None))
+    contact.legend(fontsize=6, loc="upper left", borderpad=0.0)
+    contact.set_ylim(top=1.7 * contact.get_ylim()[1])
+    push.axvspan(start, end, color="#EAF2F8", linewidth=0)
+    push.set(xlabel="Time [s]", ylabel="Sideways deviation [mm]")
+    width = 0.2
+    colours = (style.BOOK, style.EXTRA[0], style.PLAIN, style.RIVAL)
+    for k, (name, colour) in enumerate(zip(NAMES, colours)):
+        places = np.arange(3) + width * (k - 1.5)
+        values, estimated = (
+            [metrics[case][f"{when}_push"] for when in config.pushes] for case in (f"{name}_plain", name)
+        )
+        bars.bar(places, values, width, color=colour, label=NAMES[name])
+        bars.plot(places, estimated, ".", color="k", markersize=3)
+    bars.set(xticks=range(3), xticklabels=["before", "behind", "at rest"], ylabel="Deviation [mm]")
+    bars.set_ylim(top=2.0 * bars.get_ylim()[1])
+    bars.legend(fontsize=6, loc="upper right", handlelength=1.0, borderpad=0.0)
+    for letter, panel, text in zip("abc", (contact, push, bars), ("contact with the stack", "push of 0.5 N", "pushes")):
+        style.panel(panel, letter, text)
+    style.title(figure, "Estimation hides the impedance: without it, muscle-like impedance is soft far and stiff near")
+    return {"7.D": figure}
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
+) -> dict[str, pd.DataFrame]:
+    rows = [
+        {
+            "impedance": NAMES.get(case.removesuffix("_plain"), case),
+            "estimation": not case.endswith("_plain"),
+            "peak contact force [N]": values["contact_peak"],
+            "contact impulse [N s]": values["contact_impulse"],
+            "push before [mm]": values["before_push"],
+            "push behind [mm]": values["behind_push"],
+            "push at rest [mm]": values["rest_push"],
+            "static deviation [mm]": values["static_deviation"],
+            "RMS error of the run [mm]": values["rms_error"],
+        }
+        for case, values in metrics.items()
+        if case in config.cases
+    ]
+    return {"T7.D": pd.DataFrame(rows)}

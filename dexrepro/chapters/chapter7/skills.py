@@ -1,0 +1,300 @@
+"""What the experiments of this chapter share: one person's demonstrations, the skills learned from them, new tasks.
+
+Paths are in centimetres on the board. All demonstrations and EMG traces are synthetic.
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dexrepro.experiment import Config
+from dexrepro.humans.muscle import Muscle, low_pass
+from dexrepro.humans.reaching import Obstacle, Reach, Reacher
+from dexrepro.networks.fuzzy import FuzzySystem
+from dexrepro.primitives import GaussianKernels, SpringDamper, phase
+from dexrepro.primitives.incremental import ExtendedKernels
+from dexrepro.primitives.reactive import Styles, path_scaling, ridge_weights
+
+Array = NDArray[np.float64]
+
+
+def generator(config: Config, purpose: str) -> np.random.Generator:
+    """Random numbers of one purpose, the same in all experiments: the chapter has one person and one set of nodes."""
+    return np.random.default_rng(np.random.SeedSequence([config.seed, zlib.crc32(f"chapter7 {purpose}".encode())]))
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One row of the rule table: labels of distance, height and direction, and what they stand for."""
+
+    labels: tuple[str, str, str]
+    obstacle: Obstacle
+    distance: float
+    direction: float
+
+    @property
+    def name(self) -> str:
+        distance, height, direction = self.labels
+        return f"{height}/{distance} {direction}"
+
+    @property
+    def inputs(self) -> dict[str, float]:
+        return {"distance": self.distance, "height": self.obstacle.height, "direction": self.direction}
+
+
+def reach(config: Config) -> Reach:
+    """The task of the demonstrations."""
+    return Reach(config.scene.start, config.scene.goal)
+
+
+def conditions(config: Config) -> list[Condition]:
+    """Conditions of Table 7.1 in the order of the rules."""
+    scene, result = config.scene, []
+    for labels in config.fuzzy.rules:
+        distance, height, direction = labels
+        obstacle = Obstacle(scene[distance], scene[height], scene.cube)
+        away = float(np.hypot(*np.subtract(obstacle.position, scene.start)))
+        result.append(Condition(tuple(labels), obstacle, away, scene[direction]))
+    return result
+
+
+def person(config: Config) -> Reacher:
+    samples = round(config.demonstration.duration * config.demonstration.rate) + 1
+    return Reacher(**config.person, tool_radius=config.scene.tool_radius, samples=samples,
+                   directions=[config.scene[name] for name in ("left", "forward", "right")],
+                   heights=[config.scene.low, config.scene.tall])  # fmt: skip
+
+
+def muscle(config: Config) -> Muscle:
+    return Muscle(**config.muscle, heights=[config.scene.low, config.scene.tall])
+
+
+def demonstrate(config: Config) -> tuple[Array, Array]:
+    """Ordinary reaches (repetitions, N, 3) and reactions (conditions, repetitions, N, 3) [cm]."""
+    rng, count = generator(config, "demonstrations"), config.demonstration.repetitions
+    someone, task = person(config), reach(config)
+    ordinary = someone.demonstrate_ordinary(task, count, rng)
+    reactions = [someone.demonstrate(task, c.obstacle, c.direction, count, rng) for c in conditions(config)]
+    return moved(config, ordinary), moved(config, np.array(reactions))
+
+
+def measure_stiffness(config: Config) -> tuple[Array, Array]:
+    """Stiffness traces: ordinary (repetitions, N) and reactive (conditions, repetitions, N), normalised."""
+    rng, demo, arm = generator(config, "muscle"), config.demonstration, muscle(config)
+    samples = round(demo.duration * demo.rate) + 1
+    ordinary = [arm.measure(demo.duration, samples, rng) for _ in range(demo.repetitions)]
+    reactive = [
+        [
+            arm.measure(demo.duration, samples, rng, c.obstacle.height, reach(config).moment(c.obstacle.position))
+            for _ in range(demo.repetitions)
+        ]
+        for c in conditions(config)
+    ]
+    return moved(config, np.array(ordinary)), moved(config, np.array(reactive))
+
+
+def moved(config: Config, data: Array) -> Array:
+    """Data disturbed by the share ``perturbation`` of its range; unchanged in an ordinary run."""
+    if not config.perturbation:
+        return data
+    noise = generator(config, "perturbation").standard_normal(data.shape)
+    return data + config.perturbation * np.ptp(data) * noise
+
+
+class Primitive:
+    """The movement primitive of the chapter: its phases, kernels and spring-damper, Eqs. (7.3)-(7.5)."""
+
+    def __init__(self, config: Config, kernels: int) -> None:
+        self.duration, self.rate = config.demonstration.duration, config.demonstration.rate
+        self.time = np.linspace(0.0, self.duration, round(self.duration * self.rate) + 1)
+        self.phases = phase(self.time, self.duration, config.dmp.phase_decay)
+        self.kernels = GaussianKernels.spaced(kernels, config.dmp.phase_decay, config.dmp.overlap)
+        self.system = SpringDamper(config.dmp.stiffness, config.dmp.damping)
+        self.damping_sign = {"corrected": 1.0, "printed": -1.0}[config.target_sign]
+        self.ridge = config.dmp.ridge
+
+    def target(self, paths: Array, goal: ArrayLike, cutoff: float, padding: str = "odd") -> Array:
+        """Forcing term (..., N, d) that reproduces recorded ``paths``, Eq. (7.21), without the factor g - x0."""
+        smooth = low_pass(paths, cutoff, self.rate, padding, axis=-2)  # type: ignore[arg-type]
+        velocity = self.duration * np.gradient(smooth, 1 / self.rate, axis=-2, edge_order=2)
+        acceleration = self.duration * np.gradient(velocity, 1 / self.rate, axis=-2, edge_order=2)
+        correct = self.system.forcing(smooth, velocity, acceleration, goal)
+        return correct + (self.damping_sign - 1) * self.system.damping * velocity
+
+    def fit(self, target: Array) -> Array:
+        """Weights (n, d) of the kernels for a forcing term (N, d), Eq. (7.20)."""
+        return ridge_weights(self.kernels.features(self.phases), target, self.ridge)
+
+    def rollout(self, forcing: Array, start: ArrayLike, goal: ArrayLike, printed: bool = False) -> Array:
+        """Movements (..., N, d) under forcing terms (..., N, d), Eq. (7.36); ``printed``: T X' = V' as in (7.33)."""
+        if printed:
+            return self._printed_rollout(forcing, np.asarray(start, float), np.asarray(goal, float))
+        return self.system.solve(forcing, 1 / (len(self.time) - 1), start, goal)[0]
+
+    def _printed_rollout(self, forcing: Array, start: Array, goal: Array) -> Array:
+        """T V' = K (G - X) - D V + F with T X' = V': X = X0 + V / T, so V obeys one equation of first order."""
+        stiffness, damping, period = self.system.stiffness, self.system.damping, self.duration
+        rate = (damping + stiffness / period) / period
+        step = rate / self.rate
+        decay = np.exp(-step)
+        hold = (1 - decay) / step
+        later = (1 - hold) / step
+        drive = (forcing + stiffness * (goal - start)) / (period * self.rate)
+        velocity = np.zeros_like(drive)
+        for k in range(1, len(self.time)):
+            velocity[..., k, :] = (
+                decay * velocity[..., k - 1, :] + (hold - later) * drive[..., k - 1, :] + later * drive[..., k, :]
+            )
+        return start + velocity / period
+
+
+def enhancement(config: Config, kernels: GaussianKernels, draw: int | None = None) -> ExtendedKernels:
+    """The kernels with ``groups`` of random enhancement nodes; fewer groups are a prefix, ``first(nodes * groups)``."""
+    settings = config.enhancement
+    rng = generator(config, f"enhancement nodes {settings.draw if draw is None else draw}")
+    return ExtendedKernels.draw(
+        kernels, settings.groups * settings.nodes, rng, settings.weight_std, settings.bias_range
+    )
+
+
+class Skills:
+    """The ordinary skill and the reactive skills of every condition, learned from demonstrations (Steps 6.1 to 6.3)."""
+
+    def __init__(self, config: Config, ordinary: Array, reactions: Array) -> None:
+        self.config, self.reach = config, reach(config)
+        self.primitive = Primitive(config, config.dmp.kernels)
+        self.start, self.goal = self.reach.ends
+        self.demonstrated = reactions.mean(axis=1)
+        self.features = enhancement(config, self.primitive.kernels)
+        target = self.target(ordinary).mean(axis=0)
+        self.weights = self.primitive.fit(target)
+        self.forcing = self.primitive.kernels.features(self.primitive.phases) @ self.weights
+        self.reaction_targets = self.target(reactions).mean(axis=1) - self.forcing
+
+    def target(self, paths: Array) -> Array:
+        return self.primitive.target(paths, self.goal, self.config.dmp.cutoff)
+
+    @cached_property
+    def reactions(self) -> Array:
+        """Reactive forcing terms Delta f^k (conditions, N, 3) in the frame of the path (along, left, up)."""
+        style = self.config.style
+        targets = self.reaction_targets @ self.reach.axes.T
+        styles = Styles.separate(targets, style.rank, style.shared)
+        weights = styles.fit(self.features, self.primitive.phases, self.config.enhancement.ridge)
+        return self.features.blocks(self.primitive.phases).change @ weights
+
+    def perform(self, reactions: ArrayLike = 0.0) -> Array:
+        """Movements (..., N, 3) [cm] of the old task with reactions (..., N, 3) in the path's frame added."""
+        added = np.asarray(reactions, float)
+        forcing = self.forcing + (added @ self.reach.axes if added.ndim else added)
+        return self.primitive.rollout(forcing, self.start, self.goal)
+
+
+def fuzzy_system(config: Config) -> FuzzySystem:
+    """The rule table; neighbouring sets of distance and of height are ``width_factor`` of their distance wide."""
+    fuzzy, scene = config.fuzzy, config.scene
+    distances = {c.labels[0]: c.distance for c in conditions(config)}
+    width = {
+        "distance": fuzzy.width_factor * abs(distances["far"] - distances["close"]),
+        "height": fuzzy.width_factor * abs(scene.tall - scene.low),
+    }
+    sets = {
+        "distance": {label: (distances[label], width["distance"]) for label in ("close", "far")},
+        "height": {label: (scene[label], width["height"]) for label in ("low", "tall")},
+        "direction": {label: (scene[label], fuzzy.direction_widths[label]) for label in ("left", "forward", "right")},
+    }
+    return FuzzySystem(sets, [dict(zip(("distance", "height", "direction"), rule)) for rule in fuzzy.rules])
+
+
+class NewTask:
+    """A task with other ends and another obstacle, to which the learned skills are carried over."""
+
+    def __init__(self, config: Config, skills: Skills) -> None:
+        self.config, self.skills, task = config, skills, config.task
+        self.reach = Reach(task.start, task.goal)
+        self.obstacle = Obstacle(task.obstacle, task.height, config.scene.cube)
+        self.distance = float(np.hypot(*np.subtract(task.obstacle, task.start)))
+        self.ratio = self.reach.length / skills.reach.length
+        system = fuzzy_system(config)
+        self.fuzzy = system.rescaled("distance", self.ratio) if task.scope == "rescaled" else system
+
+    def scaling(self, vertical: float, lateral: float) -> Array:
+        return path_scaling(self.skills.reach.axes, self.reach.axes, (self.ratio, lateral, vertical))
+
+    @cached_property
+    def forcing(self) -> Array:
+        """The ordinary forcing term carried over: plane lengths scale with the task, heights do not."""
+        if self.config.task.scaling == "printed_per_axis":
+            return self.skills.forcing * self._axis_ratios()
+        return self.skills.forcing @ self.scaling(1.0, self.ratio).T
+
+    def _axis_ratios(self) -> Array:
+        """(G - X0) / (g - x0) of (7.36) a coordinate; the vertical one is 0/0 and is taken as 1."""
+        start, goal = self.reach.ends
+        ratios = np.ones(3)
+        ratios[:2] = (goal - start)[:2] / (self.skills.goal - self.skills.start)[:2]
+        return ratios
+
+    def reaction(self, direction: ArrayLike, height: ArrayLike | None = None) -> Array:
+        """Fuzzy reactive forcing terms Delta f^F (..., N, 3) for directions (...), Eq. (7.35)."""
+        blend = self.fuzzy.blend(
+            self.skills.reactions,
+            distance=self.distance,
+            height=self.obstacle.height if height is None else height,
+            direction=direction,
+        )
+        task = self.config.task
+        if task.scaling == "printed_per_axis":
+            return blend @ self.skills.reach.axes * self._axis_ratios()
+        lateral, vertical = {"absolute": (1.0, 1.0), "all_axes": (self.ratio, self.ratio)}[task.reaction_scaling]
+        # blend is in the frame of the path; S carries it there from the board's, so the old axes are the identity.
+        return blend @ path_scaling(np.eye(3), self.reach.axes, (self.ratio, lateral, vertical)).T
+
+    def perform(self, reaction: ArrayLike = 0.0) -> Array:
+        """Generalised movements (..., N, 3) [cm], Eq. (7.36)."""
+        printed = self.config.task.kinematics == "printed"
+        return self.skills.primitive.rollout(
+            self.forcing + np.asarray(reaction, float), *self.reach.ends, printed=printed
+        )
+
+    def clearance(self, paths: Array) -> Array:
+        return self.obstacle.clearance(paths, self.config.scene.tool_radius)
+
+
+def generalised_stiffness(config: Config, task: NewTask, traces: Array, endpoints: str) -> Array:
+    """Stiffness (N,) for a new obstacle from the four bundles (distance, height), blended by rules without direction.
+
+    traces (conditions, repetitions, N); ``endpoints``: start and end are the "average" of all bundles (as printed) or
+    blended like the forcing ("fuzzy").
+    """
+    primitive = Primitive(config, config.dmp.stiffness_kernels)
+    bundles = bundle_means(config, traces)
+    rules = [{"distance": distance, "height": height} for distance, height in bundles]
+    fuzzy = FuzzySystem(task.fuzzy.sets, rules)
+    curves = np.array(list(bundles.values()))[..., None]
+    targets = primitive.target(curves, curves[:, -1], config.dmp.stiffness_cutoff, "even")
+    features = primitive.kernels.features(primitive.phases)
+    forcing = features @ np.array([primitive.fit(target) for target in targets])
+    inputs = {"distance": task.distance, "height": task.obstacle.height}
+    start, goal = curves[:, 0].mean(axis=0), curves[:, -1].mean(axis=0)
+    if endpoints == "fuzzy":
+        start, goal = fuzzy.blend(curves[:, 0], **inputs), fuzzy.blend(curves[:, -1], **inputs)
+    return primitive.rollout(fuzzy.blend(forcing, **inputs), start, goal)[:, 0]
+
+
+def bundle_means(config: Config, traces: Array) -> dict[tuple[str, str], Array]:
+    """Mean stiffness (N,) of each (distance, height): all directions and repetitions together."""
+    keys = [condition.labels[:2] for condition in conditions(config)]
+    return {
+        key: np.mean([trace for k, trace in zip(keys, traces) if k == key], axis=(0, 1)) for key in dict.fromkeys(keys)
+    }
+
+
+def rms(paths: Array, reference: Array) -> Array:
+    """Root mean square distance along paths (..., N, d) to a reference (..., N, d)."""
+    return np.sqrt(((paths - reference) ** 2).sum(axis=-1).mean(axis=-1))

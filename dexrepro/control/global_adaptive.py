@@ -1,0 +1,187 @@
+"""Task-space adaptive neural control with prescribed performance, global through a switch to a robust term (4.27)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg.lapack import dgesv
+
+from dexrepro.control.prescribed_performance import PerformanceBound
+
+Array = NDArray[np.float64]
+
+
+class Kinematics(Protocol):
+    """The part of a robot model that the law needs: task position (m,) and its Jacobian (m, n) at joint position q."""
+
+    def position(self, q: Array) -> Array: ...
+    def jacobian(self, q: Array) -> Array: ...
+
+
+class Network(Protocol):
+    """A learning approximator, such as :class:`dexrepro.networks.AdaptiveNetwork`."""
+
+    def output(self, z: Array, grow: bool = False) -> Array: ...
+    def adapt(self, error: Array) -> None: ...
+
+
+@dataclass(frozen=True)
+class Switch:
+    """E(Xi), Eq. (4.26): 1 where every |Xi_k| < inner, 0 where one is > outer, continuous between.
+
+    shape: omega; E <= 1 needs shape >= 0.638, or >= 2 with ``square_outside``. square_outside: take the square of the
+    exponential instead of the square of its argument, the other way to read the print. node_scaled: inner and outer
+    are the book's epsilon_a and epsilon_b, multiples of the radius of the node farthest from the origin.
+    """
+
+    inner: float
+    outer: float
+    shape: float = 1.0
+    square_outside: bool = False
+    node_scaled: bool = False
+
+    def __call__(self, z: ArrayLike, radius: float = 1.0) -> float:
+        """E at the input ``z``; ``radius`` of the farthest node [unit of z], used with ``node_scaled``."""
+        scale = radius if self.node_scaled else 1.0
+        inner, outer = self.inner * scale, self.outer * scale
+        size = np.abs(z)
+        largest = size.max()
+        if largest < inner:
+            return 1.0
+        if largest > outer:
+            return 0.0
+        return float(np.prod(self.component(np.where(size < inner, inner, size), inner, outer)))
+
+    def component(self, size: ArrayLike, inner: float, outer: float) -> Array:
+        """e of one component's magnitude between ``inner`` and ``outer``."""
+        share = (np.asarray(size, dtype=float) ** 2 - inner**2) / (outer**2 - inner**2)
+        power = 2 * share / self.shape if self.square_outside else (share / self.shape) ** 2
+        return (1.0 - share) * np.exp(power)
+
+
+@dataclass(frozen=True)
+class RobustTerm:
+    """Upsilon_b = y tanh(y z_2 / width), Eq. (4.29): bounded by y [N m] a joint; width: omega-bar [N m rad/s]."""
+
+    bound: ArrayLike
+    width: ArrayLike
+
+    def __call__(self, velocity_error: Array) -> Array:
+        bound = np.asarray(self.bound, dtype=float)
+        return bound * np.tanh(bound * velocity_error / np.asarray(self.width, dtype=float))
+
+
+class GlobalAdaptiveControl:
+    """Backstepping with a barrier on the task error z_1, a network for the unknown dynamics and a robust term.
+
+    tau = -K_2 z_2 - J^T P - E Y(Xi) - (1 - E) Upsilon_b, Eq. (4.27) with tau in joint space and J^T P for P^T J, and
+    the virtual velocity alpha = J^+ (x_d' - (K_1 + L) z_1), Eq. (4.20); z_2 = q' - alpha. The network estimates
+    F = -(M alpha' + C alpha + G) and learns from E z_2.
+
+    model: kinematics only. network: None leaves the term out. bound: the prescribed performance. switch: None for
+    E = 1. robust: None leaves Upsilon_b out. position_gain: K_1 [1/s], a number or one a task axis. velocity_gain:
+    K_2 [N m s/rad], one a joint. floor: c in L(t) [1/s^2]. barrier: False leaves J^T P out. reduced_input: Xi = [q,
+    alpha'] instead of [q, q', alpha, alpha']. step: control period [s].
+
+    After a call: ``error`` z_1 [m], ``usage`` chi, ``velocity_error`` z_2 [rad/s], ``share`` E, ``input`` Xi.
+    ``learning`` False freezes weights and nodes.
+    """
+
+    def __init__(
+        self,
+        model: Kinematics,
+        network: Network | None,
+        *,
+        bound: PerformanceBound,
+        position_gain: ArrayLike,
+        velocity_gain: ArrayLike,
+        step: float,
+        switch: Switch | None = None,
+        robust: RobustTerm | None = None,
+        floor: float = 0.01,
+        barrier: bool = True,
+        reduced_input: bool = False,
+    ) -> None:
+        self.model, self.network, self.bound, self.switch, self.robust = model, network, bound, switch, robust
+        self.position_gain = np.asarray(position_gain, dtype=float)
+        self.velocity_gain = np.asarray(velocity_gain, dtype=float)
+        self.step, self.floor, self.barrier, self.reduced_input = step, floor, barrier, reduced_input
+        self.learning = True
+        self.reset()
+
+    def reset(self) -> None:
+        """Start the bound anew; the network keeps what it has learned."""
+        self._periods = 0
+        self.error = self.usage = self.velocity_error = self.input = np.empty(0)
+        self.share = 1.0
+
+    def __call__(
+        self, q: Array, dq: Array, position: Array, velocity: Array, acceleration: Array
+    ) -> tuple[Array, Array]:
+        """Joint torque [N m] without -K_2 q', and that damping K_2 [N m s/rad], for the world to apply implicitly.
+
+        q, dq: joint position and velocity (n,). position, velocity, acceleration: the reference in task space (m,).
+        """
+        nu, ratio, ratio_rate = self.bound.rate(self._periods * self.step)
+        self._periods += 1
+        jacobian = self.model.jacobian(q)
+        self.error = self.model.position(q) - position
+        alpha, alpha_rate = self._virtual_velocity(q, dq, jacobian, (velocity, acceleration), (ratio, ratio_rate))
+        self.velocity_error = dq - alpha
+        parts = (q, alpha_rate) if self.reduced_input else (q, dq, alpha, alpha_rate)
+        self.input = np.concatenate(parts)
+        self.share = 1.0 if self.switch is None else self.switch(self.input, self._radius())
+        torque = self.velocity_gain * alpha
+        self.usage = self.bound.usage(self.error, nu)
+        if self.barrier:
+            torque = torque - jacobian.T @ self.bound.barrier_gradient(self.error, nu)
+        if self.network is not None:
+            torque = torque - self.share * self.network.output(self.input, grow=self.learning)
+            if self.learning:
+                self.network.adapt(self.share * self.velocity_error)
+        if self.robust is not None and self.share < 1.0:
+            torque = torque - (1.0 - self.share) * self.robust(self.velocity_error)
+        return torque, self.velocity_gain
+
+    def _virtual_velocity(
+        self, q: Array, dq: Array, jacobian: Array, reference: tuple[Array, Array], ratios: tuple[float, float]
+    ) -> tuple[Array, Array]:
+        """alpha (4.20) and its derivative, which is exact but for a forward difference of the Jacobian."""
+        (velocity, acceleration), (ratio, ratio_rate) = reference, ratios
+        decay = math.sqrt(2.0 * ratio**2 + self.floor)  # l(t)
+        feedback = self.position_gain + decay
+        u = velocity - feedback * self.error
+        error_rate = jacobian @ dq - velocity
+        u_rate = acceleration - feedback * error_rate - (2.0 * ratio * ratio_rate / decay) * self.error
+        jacobian_rate = (self.model.jacobian(q + 1e-7 * dq) - jacobian) * 1e7
+        inverse = _right_inverse(jacobian)
+        alpha = inverse @ u
+        u_rate -= jacobian_rate @ alpha
+        if len(jacobian) == len(q):
+            return alpha, inverse @ u_rate
+        drift = jacobian_rate.T @ (inverse.T @ alpha)  # of the row space of J
+        return alpha, drift + inverse @ (u_rate - jacobian @ drift)
+
+    def _radius(self) -> float:
+        if self.switch is None or not self.switch.node_scaled or self.network is None:
+            return 1.0
+        centres: Array = self.network.basis.centres  # type: ignore[attr-defined]
+        return float(np.sqrt(np.max(np.einsum("ij,ij->i", centres, centres)))) if len(centres) else np.inf
+
+
+def _right_inverse(jacobian: Array) -> Array:
+    """J^+ = J^T (J J^T)^-1, which is the inverse of a square J; by LAPACK directly, as NumPy's checks cost more."""
+    rows, columns = jacobian.shape
+    if rows == columns:
+        return dgesv(jacobian, _identity(rows))[2]
+    return jacobian.T @ dgesv(jacobian @ jacobian.T, _identity(rows))[2]
+
+
+@cache
+def _identity(size: int) -> Array:
+    return np.eye(size)

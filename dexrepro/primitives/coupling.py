@@ -1,0 +1,156 @@
+"""Coupling terms of other authors for obstacles, partners and surfaces (Table 6.1).
+
+[16] Hoffmann et al. steer around points, [39] Park et al. descend a dynamic potential, [20] Umlauft et al. and [19]
+Gams et al. hold the distance of two agents, [17] follows a surface with a force. v is tau dx/dt throughout.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dexrepro.primitives.constrained import Skill
+
+Array = NDArray[Any]
+Term = Callable[[int, Array, Array], Array]
+
+
+def steering(position: Array, velocity: Array, points: Array, strength: float | Array, decay: float | Array) -> Array:
+    """[16]: p = gamma R v phi exp(-beta phi), summed over obstacle points, in the plane.
+
+    phi is the angle between the direction to the point and v; R turns v by 90 degrees, away from the point. A heading
+    exactly at the point has no side: p = 0. position, velocity: (..., 2); points: (..., m, 2); strength, decay: gamma
+    and beta, broadcast with (..., m).
+    """
+    to = points - position[..., None, :]
+    v = velocity[..., None, :]
+    cross = to[..., 0] * v[..., 1] - to[..., 1] * v[..., 0]
+    angle = np.arctan2(np.abs(cross), (to * v).sum(-1))
+    size = (np.sign(cross) * strength * angle * np.exp(-decay * angle)).sum(-1)
+    return size[..., None] * np.stack([-velocity[..., 1], velocity[..., 0]], axis=-1)
+
+
+def dynamic_potential(
+    position: Array,
+    velocity: Array,
+    closest: Callable[[Array], Array],
+    strength: float,
+    power: float,
+    step: float = 1e-5,
+) -> Array:
+    """[39]: minus the gradient of lambda (-cos theta)^beta |v| / distance, theta from v to the way off the obstacle.
+
+    position, velocity: (..., 2); closest: closest obstacle point of positions, same shape. The gradient is numerical,
+    because the closest point moves along with the position.
+    """
+    shifts = step * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    probes = position[..., None, :] + shifts
+    away = probes - closest(probes)
+    distance = np.linalg.norm(away, axis=-1)
+    speed = np.linalg.norm(velocity, axis=-1)[..., None]
+    approach = np.maximum(-(away @ velocity[..., None])[..., 0] / (distance * speed + 1e-300), 0)
+    level = strength * approach**power * speed / (distance + 1e-300)
+    return np.stack([level[..., 1] - level[..., 0], level[..., 3] - level[..., 2]], axis=-1) / (2 * step)
+
+
+def coupled_rollout(skill: Skill, term: Term, dt: float, position: Array, velocity: Array) -> Array:
+    """Path (n, ..., d) of a primitive with a term(k, x, v) added to tau dv/dt, by the classical Runge-Kutta method.
+
+    A steering term turns v without braking it; explicit Euler steps would speed it up and blame the term.
+    """
+    x, v = np.array(position, float, subok=True), np.array(velocity, float, subok=True)
+    tau = skill.time_constant
+    path = np.empty((len(skill.forcing), *x.shape))
+    path[0] = x
+    for k in range(len(path) - 1):
+        first, last = skill.forcing[k], skill.forcing[k + 1]
+        rate_x = rate_v = total_x = total_v = np.zeros(())
+        for forcing, share, weight in (
+            (first, 0.0, 1),
+            ((first + last) / 2, 0.5, 2),
+            ((first + last) / 2, 0.5, 2),
+            (last, 1.0, 1),
+        ):
+            x_at, v_at = x + share * dt * rate_x, v + share * dt * rate_v
+            rate_x, rate_v = v_at / tau, skill.acceleration(forcing, x_at, v_at) + term(k, x_at, v_at) / tau
+            total_x, total_v = total_x + weight * rate_x, total_v + weight * rate_v
+        x, v = x + dt / 6 * total_x, v + dt / 6 * total_v
+        path[k + 1] = x
+    return path
+
+
+@dataclass(frozen=True)
+class Agents:
+    """Two primitives whose distance is held by a velocity coupling; [20] with ``prediction`` 0, else [19].
+
+    tau dv/dt = primitive + c2 dC/dt, tau dx/dt = v + C with C = -k n (|x_i - x_j| - d) along the line n between the
+    agents, opposite on the two. slowing: eta of [20], by which the phase waits for an agent off its distance.
+    """
+
+    coupling: float
+    distance: float
+    prediction: float = 0.0
+    slowing: float = 0.0
+    stiffness: float = 25.0 * 25.0 / 4
+    damping: float = 25.0
+    decay: float = 0.7
+
+    def rollout(
+        self,
+        forcing: Callable[[float], Array],
+        starts: Array,
+        goals: Array,
+        push: Callable[[float], Array],
+        dt: float,
+        duration: float,
+    ) -> Array:
+        """Paths (n, 2, d) for tau = 1 s; forcing(s): (2, d) of both agents; push(t): added to their dv/dt, (2, d)."""
+        x, v, s = np.array(starts, float), np.zeros_like(np.asarray(starts, float)), np.ones(2)
+        previous = self._pull(x)
+        path = [x]
+        for k in range(round(duration / dt)):
+            pull = self._pull(x)
+            forces = np.stack([forcing(s[i])[i] for i in (0, 1)])
+            rate = self.prediction * (pull - previous) / dt
+            v = v + dt * (self.stiffness * (goals - x) - self.damping * v + forces + rate + push(k * dt))
+            x = x + dt * (v + pull)
+            s = s - dt * self.decay * s / (1 + self.slowing * (pull**2).sum(1) / max(self.coupling, 1e-9) ** 2)
+            previous = pull
+            path.append(x)
+        return np.array(path)
+
+    def _pull(self, x: Array) -> Array:
+        gap = x[0] - x[1]
+        distance = np.linalg.norm(gap)
+        pull = -self.coupling * gap / distance * (distance - self.distance)
+        return np.stack([pull, -pull])
+
+
+@dataclass(frozen=True)
+class SurfaceFollower:
+    """[17]: the acceleration normal to a surface is corrected by a PI law on the contact force [N]."""
+
+    proportional: float
+    integral: float
+    set_force: float
+
+    def rollout(
+        self, skill: Skill, position: Array, dt: float, surface: Callable[[float], float], stiffness: float
+    ) -> tuple[Array, Array]:
+        """Path (n, 2) and contact force (n,) [N]; surface(x): height; stiffness: of the contact [N/length]."""
+        x, v, total = np.array(position, float), np.zeros(2), 0.0
+        path, forces = [], []
+        for k in range(len(skill.forcing)):
+            force = stiffness * max(surface(x[0]) - x[1], 0.0)
+            path.append(x)
+            forces.append(force)
+            error = force - self.set_force
+            total += error * dt
+            correction = np.array([0.0, self.proportional * error + self.integral * total])
+            v = v + dt * (skill.acceleration(skill.forcing[k], x, v) + correction / skill.time_constant)
+            x = x + dt * v / skill.time_constant
+        return np.array(path), np.array(forces)

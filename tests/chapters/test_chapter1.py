@@ -1,0 +1,199 @@
+import copy
+from functools import cache
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.spatial.transform import Rotation
+
+from dexrepro.chapters.chapter1 import (
+    dartboard,
+    force_tracking,
+    hand_over,
+    hold_and_move,
+    lyapunov,
+    ready_to_hold,
+    rigid_boxes,
+    two_nuts,
+)
+from dexrepro.chapters.chapter1.followers import Follower, rotation_error, solve_pose
+from dexrepro.chapters.chapter1.hold_path import hold_path
+from dexrepro.chapters.chapter1.line import carry, press
+from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.control.holding import AutoregressiveHolding, FixedDistance
+from dexrepro.physics.soft_object import Cushion
+from dexrepro.physics.world import World
+from dexrepro.robots.baxter import baxter, posture
+from dexrepro.runner import generator, live
+
+
+@cache
+def cases(experiment):
+    return experiment_cases(compose_chapter("1"), experiment)
+
+
+def case(experiment, name, **changes):
+    return live({**copy.deepcopy(cases(experiment)[name]), **changes, "perturbation": 0.0, "seed": 0, "case": name})
+
+
+def rng(experiment):
+    return lambda purpose: generator(0, experiment, purpose)
+
+
+def test_rotation_error_is_the_rotation_vector():
+    vectors = np.random.default_rng(0).uniform(-1, 1, (20, 3))
+    base = Rotation.random(20, random_state=1).as_matrix()
+    for vector, actual in zip(vectors, base):
+        desired = Rotation.from_rotvec(vector).as_matrix() @ actual
+        np.testing.assert_allclose(rotation_error(desired, actual), vector, atol=1e-12)
+    assert rotation_error(np.eye(3), np.eye(3)) == [0.0, 0.0, 0.0]
+
+
+def test_simulated_arms_agree_with_the_line():
+    config = case("force_tracking", "c1_proposed", duration=2.0)
+    recording = force_tracking.simulate(config, rng("force_tracking"))
+    law = AutoregressiveHolding(dt=1e-3, desired_force=10.0, gain=0.11, estimator_gain=2.0, adaptation=1e-4, lags=3)
+    time = 1e-3 * np.arange(2000)
+    force = press(law, 0.015 * time, np.full(2000, 50.0), dt=1e-3)["force"][:, 0]
+    assert np.abs(force[::5] - 10.0 - recording["error"])[100:].max() < 0.05
+
+
+def test_printed_definition_loses_contact_and_counts_as_the_desired_force():
+    config = case("force_tracking", "c1_printed")
+    recording = force_tracking.simulate(config, rng("force_tracking"))
+    assert recording.status == "left the workspace"
+    assert force_tracking.measure(recording, config)["rmse"] == pytest.approx(10.0)
+
+
+def test_printed_sign_of_the_inverse_kinematics_runs_away():
+    config = case("force_tracking", "c1_printed_inverse")
+    recording = force_tracking.simulate(config, rng("force_tracking"))
+    assert recording.simulated < 1.0
+    assert "diverged" in recording.status or "workspace" in recording.status
+
+
+def test_an_arm_follows_a_pose_and_carries_a_known_force():
+    arm = baxter("left")
+    place, rotation = np.array([0.62, 0.25, 0.3]), hold_and_move.LEVEL @ hold_and_move.FLIP
+    start = solve_pose(arm, posture("left"), place, rotation)
+    with World(step=2e-3) as world:
+        world.add_arm("arm", arm, start)
+        follower = Follower(arm, start, dt=0.01, gain=20.0, singular=0.02, posture=0.2, bandwidth=40.0, mass_error=0.0)
+        follower.reset(start)
+        target = lambda t: place + [0.05 * np.sin(2 * t), 0.0, 0.03 * np.sin(3 * t)]  # noqa: E731
+        run = world.run(
+            2.0, {"arm": lambda sense: follower.go(sense, target(sense.time), rotation)}, control_period=0.01
+        )
+    wanted = np.array([target(t) for t in run.time])
+    assert np.linalg.norm(run["arm.tip"] - wanted, axis=1)[250:].max() < 2e-3
+
+
+def test_a_place_out_of_reach_is_refused():
+    with pytest.raises(ValueError, match="cannot reach"):
+        solve_pose(baxter("left"), posture("left"), np.array([2.0, 0.0, 0.0]), np.eye(3))
+
+
+def test_the_path_turns_about_the_middle_of_the_held_object():
+    config = case("hold_and_move", "t1_proposed")
+    config.path["drift"] = config.path["tremor"] = 0.0
+    config.path["swing"] = [0.0, 0.0]
+    path = hold_path(config, np.zeros(3), np.random.default_rng(1))
+    np.testing.assert_allclose(
+        path.rotation @ np.swapaxes(path.rotation, 1, 2), np.eye(3) + 0 * path.rotation, atol=1e-12
+    )
+    np.testing.assert_allclose(path.rotation[:, :, 2], path.axis)
+    middle = path.position + 0.19 * path.axis
+    tilting = slice(round(path.phases["tilt"] / 0.01), round((path.phases["tilt"] + 2.0) / 0.01))
+    assert np.ptp(middle[tilting], axis=0).max() < 1e-9
+    assert path.tilt.max() == pytest.approx(np.pi / 4)
+    assert np.linalg.norm(np.diff(path.position, axis=0), axis=1).max() < 0.01
+
+
+def test_a_resting_body_is_held_at_the_distance_that_gives_the_force():
+    n = 4000
+    scene = {"partner": np.zeros(n), "weight": np.zeros(n), "scale": np.ones(n)}
+    soft = [Cushion(100.0, 2e-3, fast=1.0, slow=0.0, fast_time=0.05, slow_time=1.0) for _ in range(2)]
+    law = FixedDistance(dt=0.01, displacement=-0.15, speed=0.3)
+    force = carry(law, scene, soft, mass=0.3, length=0.53, period=5, dt=2e-3, lag=0.01, noise=np.zeros(n))
+    assert force[-1, 0] == pytest.approx(15.0, rel=1e-3)
+
+
+def test_a_late_sample_in_a_batch_is_a_late_sample_alone():
+    n = 1000
+    scene = {"partner": np.zeros(n), "weight": np.zeros(n), "scale": np.ones(n)}
+
+    def run(delay, many):
+        soft = [Cushion(np.full(many, 100.0), 2e-3, fast=1.0, slow=0.2, fast_time=0.05, slow_time=4.0) for _ in "ab"]
+        law = AutoregressiveHolding(
+            dt=0.01, desired_force=15.0, gain=0.1, estimator_gain=50.0, adaptation=1e-4, lags=2, speed_limit=0.3
+        )
+        return carry(law, scene, soft, mass=0.3, length=0.53, period=5, dt=2e-3, lag=0.01, noise=np.zeros(n),
+                     delay=delay, batch=many)  # fmt: skip
+
+    both = run(np.array([0, 2]), 2)
+    np.testing.assert_allclose(both[:, :1], run(0, 1))
+    np.testing.assert_allclose(both[:, 1:], run(2, 1))
+
+
+def test_lyapunov_function_of_the_ideal_law_falls_at_every_step():
+    config = case("lyapunov", "ideal", duration=0.5)
+    recording = lyapunov.simulate(config, rng("lyapunov"))
+    assert np.all(np.diff(recording["lyapunov"]) < 0)
+    printed = lyapunov.simulate(case("lyapunov", "printed", duration=3.0, step=1e-3), rng("lyapunov"))
+    assert np.any(np.diff(printed["lyapunov"]) > 0)
+
+
+def test_bound_of_the_estimator_gain_solves_rouths_condition():
+    config = case("lyapunov", "growth")
+    least = lyapunov.bound(config)
+    assert least * (least + 50.0 * 0.11) == pytest.approx(1.0 - 50.0 * 1e-4)
+
+
+def test_scores_fall_by_one_a_ring():
+    hits = pd.DataFrame({"panel": 0, "person": 0, "mapping": "general", "y": [0.0, 0.0031, 0.2], "z": 0.0})
+    assert dartboard.scores(hits, 0.003)["general"].iloc[0] == 10 + 9 + 0
+
+
+def test_operators_are_the_same_for_both_mappings_and_cases():
+    first = dartboard.simulate(case("dartboard", "scale2", panels=1, operators=2), rng("dartboard"))
+    again = dartboard.simulate(case("dartboard", "scale3", panels=1, operators=2), rng("dartboard"))
+    own = [run.frames["hits"].query("mapping == 'proposed'")[["y", "z"]].to_numpy() for run in (first, again)]
+    np.testing.assert_array_equal(*own)
+
+
+def test_re_fixing_stays_comfortable_and_turns_both_nuts():
+    config = case("two_nuts", "proposed", operators=2)
+    recording = two_nuts.simulate(config, rng("two_nuts"))
+    assert two_nuts.measure(recording, config)["outside"] < 0.1
+    assert np.rad2deg(recording["tool_roll"][-1]) == pytest.approx(240.0, abs=15.0)
+
+
+def test_the_camera_holds_each_frame_and_is_off_by_its_bias():
+    config = case("ready_to_hold", "adjustable")
+    seen = ready_to_hold.camera(config, np.zeros((6000, 3)), np.random.default_rng(0))
+    np.testing.assert_allclose(seen.mean(axis=0), config.camera.bias, atol=1e-3)
+    assert np.sum(np.any(np.diff(seen, axis=0) != 0, axis=1)) < 1000
+
+
+def test_the_object_is_shaken_then_held_by_the_leader():
+    config = case("ready_to_hold", "adjustable")
+    plan = ready_to_hold.script(config)
+    distance = np.linalg.norm(plan["centre"] - plan["position"], axis=1)
+    np.testing.assert_allclose(distance[plan["time"] >= 24.0], config.radius, atol=1e-9)
+    assert distance[plan["time"] < 18.0].min() > 0.25
+
+
+def test_latch_switches_once_and_the_light_touch_is_held():
+    config = case("hand_over", "latched", duration=4.0)
+    recording = hand_over.simulate(config, rng("hand_over"))
+    numbers = hand_over.measure(recording, config)
+    assert numbers["switches"] == 1
+    assert abs(numbers["bias"]) < 0.2
+
+
+def test_score_interval_contains_the_share():
+    low, high = rigid_boxes.wilson(9, 9)
+    assert low == pytest.approx(0.70, abs=0.01)
+    assert high == pytest.approx(1.0)
+    low, high = rigid_boxes.wilson(5, 10)
+    assert low < 0.5 < high

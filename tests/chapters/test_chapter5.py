@@ -1,0 +1,85 @@
+"""Chapter 5: what its experiments are made of, and that shortened cases run to metrics and pictures."""
+
+import json
+
+import numpy as np
+
+from dexrepro.chapters import chapter5
+from dexrepro.chapters.chapter5 import pen
+from dexrepro.cli import main
+from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.robots.pen_kinematics import pen_arm_angles
+
+
+def test_every_claim_and_erratum_names_metrics_of_an_experiment_with_cases():
+    composed = compose_chapter("5")
+    cases = {e.name: set(experiment_cases(composed, e.name)) for e in chapter5.EXPERIMENTS}
+    names = [n for claim in chapter5.CLAIMS for n in claim.metrics] + [n for e in chapter5.ERRATA for n in e.evidence]
+    for name in names:
+        experiment, _, rest = name.partition(".")
+        first, _, metric = rest.partition(".")
+        assert first in cases[experiment] or not metric, name  # without a case: from summarise
+
+
+def test_ids_are_unique():
+    for group in (chapter5.CLAIMS, chapter5.ERRATA):
+        assert len({item.id for item in group}) == len(group)
+
+
+def test_paper_and_table_maps_are_undone():
+    letter = np.random.default_rng(0).uniform(0, 4, size=(5, 2))
+    np.testing.assert_allclose(pen.from_paper(pen.on_paper(letter)), letter, atol=1e-12)
+    crossing = np.random.default_rng(0).uniform(-6, 8, size=(5, 3))
+    np.testing.assert_allclose(pen.from_table(pen.over_table(crossing)), crossing, atol=1e-12)
+
+
+def test_everything_that_is_drawn_or_crossed_is_within_reach():
+    corners = [[x, y, z] for x in (-6, 8) for y in (-2, 2) for z in (0, 8)]
+    pen_arm_angles(pen.over_table(np.array(corners, dtype=float)))
+    pen_arm_angles(pen.on_paper(np.array([[0.0, 0.0], [4.5, 6.5], [0.0, 6.5], [4.5, 0.0]])))
+
+
+def metrics_of(folder, experiment):
+    (found,) = folder.glob(f"runs/{experiment}-*/metrics.json")
+    return json.loads(found.read_text())
+
+
+def run(tmp_path, experiment, *overrides):
+    arguments = ["run", "chapter=5", f"only={experiment}", f"results={tmp_path}", "workers=1", "quiet=true", *overrides]
+    assert main(arguments) == 0
+    return metrics_of(tmp_path, experiment)
+
+
+CASES = {
+    "corrected": "{hand.letter: w}",
+    "printed_sign": "{hand.letter: w, law.network_sign: -1}",
+    "no_network": "{hand.letter: w, network.enabled: false}",
+}
+
+
+def test_corrected_sign_stays_inside_the_bound_and_the_printed_sign_leaves_it(tmp_path):
+    cases = [f"+bounded_tracking.cases.{name}={override}" for name, override in CASES.items()]
+    short = ["bounded_tracking.arm.duration=1.2", "bounded_tracking.hand.letters=[a, w]"]
+    metrics = run(tmp_path, "bounded_tracking", "~bounded_tracking.cases", *cases, *short)
+    assert metrics["bounded_tracking.corrected.bound_use"] < 0.5
+    assert metrics["bounded_tracking.printed_sign.bound_use"] > 1
+    assert metrics["bounded_tracking.corrected.tip_rms"] < metrics["bounded_tracking.no_network.tip_rms"]
+
+
+def test_one_draw_of_the_crossing_reaches_all_goals_freely(tmp_path):
+    short = ["obstacle_crossing.features.draws=1", "~obstacle_crossing.cases", "+obstacle_crossing.cases.default={}"]
+    metrics = run(tmp_path, "obstacle_crossing", *short)
+    assert metrics["obstacle_crossing.default.goals2.clearance"] > 0
+    assert metrics["obstacle_crossing.default.skill1.over3"] < 0
+    (folder,) = tmp_path.glob("runs/obstacle_crossing-*/figures")
+    assert {path.name for path in folder.glob("*.png")} == {"fig_5_08.png", "fig_5_C.png"}
+
+
+def test_lemma_as_printed_misses_the_pseudo_inverse_of_mixed_blocks_but_not_the_fit(tmp_path):
+    metrics = run(
+        tmp_path, "incremental_update", "incremental_update.lemma.draws=3", "incremental_update.lemma.most=60"
+    )
+    assert metrics["incremental_update.lemma.mixed.completed.error"] < 1e-8
+    assert metrics["incremental_update.lemma.mixed.printed.error"] > 0.1
+    assert metrics["incremental_update.lemma.mixed.printed.fit"] < 1e-8
+    assert metrics["incremental_update.cost.saving_last"] > metrics["incremental_update.cost.saving_first"]

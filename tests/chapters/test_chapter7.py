@@ -1,0 +1,146 @@
+"""The parts that the experiments of chapter 7 share, on answers known beforehand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dexrepro.chapters.chapter7 import (
+    desk,
+    fuzzy_generalisation,
+    impedance_stability,
+    obstacle_contact,
+    reactive_learning,
+    skills,
+    style_separation,
+    unseen_conditions,
+)
+from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.experiment import Config
+from dexrepro.runner import live
+
+
+@pytest.fixture(scope="module")
+def cases() -> Any:
+    composed = compose_chapter("7")
+
+    def find(experiment: str, case: str, **changes: Any) -> Config:
+        values = experiment_cases(composed, experiment)[case]
+        return live({**values, "seed": 0, "perturbation": 0.0, "case": case, **changes})
+
+    return find
+
+
+@pytest.fixture(scope="module")
+def learned(cases: Any) -> skills.Skills:
+    config = cases("fuzzy_generalisation", "main")
+    return skills.Skills(config, *skills.demonstrate(config))
+
+
+def test_printed_kinematics_end_where_the_damper_balances_the_spring(cases: Any) -> None:
+    """T X' = V' drives X to (K G + D T X0) / (K + D T) instead of G when nothing forces it."""
+    config = cases("fuzzy_generalisation", "main")
+    primitive = skills.Primitive(config, 8)
+    start, goal = np.array([1.0, 0.0, 0.0]), np.array([9.0, 4.0, 0.0])
+    still = np.zeros((len(primitive.time), 3))
+    end = primitive.rollout(still, start, goal, printed=True)[-1]
+    spring, damper = primitive.system.stiffness, primitive.system.damping * primitive.duration
+    assert end == pytest.approx((spring * goal + damper * start) / (spring + damper), abs=1e-6)
+    assert primitive.rollout(still, start, goal)[-1] == pytest.approx(goal, abs=1e-2)
+
+
+def test_target_and_rollout_return_a_smooth_path(cases: Any) -> None:
+    config = cases("fuzzy_generalisation", "main")
+    primitive, task = skills.Primitive(config, 8), skills.reach(config)
+    path = skills.person(config).ordinary(task)
+    again = primitive.rollout(primitive.target(path, task.ends[1], 8.0), *task.ends)
+    assert skills.rms(again, path) < 0.02
+
+
+def test_a_task_that_is_turned_is_performed_turned(cases: Any, learned: skills.Skills) -> None:
+    config = cases("fuzzy_generalisation", "main")
+    angle = 0.6
+    turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1.0]])
+    tasks = []
+    for rotation in (np.eye(3), turn):
+        place = {name: (rotation @ [*config.task[name], 0.0])[:2].tolist() for name in ("start", "goal", "obstacle")}
+        tasks.append(skills.NewTask(Config({**config, "task": Config({**config.task, **place})}), learned))
+    straight, turned = (task.perform(task.reaction(0.4)) for task in tasks)
+    assert turned == pytest.approx(straight @ turn.T, abs=1e-9)
+    assert tasks[0].clearance(straight) == pytest.approx(skills.NewTask(config, learned).clearance(straight))
+
+
+def test_the_old_task_is_its_own_generalisation(cases: Any, learned: skills.Skills) -> None:
+    config = cases("fuzzy_generalisation", "main")
+    old = Config({**config.task, "start": config.scene.start, "goal": config.scene.goal, "scope": "same"})
+    task = skills.NewTask(Config({**config, "task": old}), learned)
+    assert task.perform() == pytest.approx(learned.perform(), abs=1e-9)
+    assert task.ratio == pytest.approx(1.0)
+
+
+def test_tip_and_joint_angles_are_inverse_and_so_are_board_and_robot() -> None:
+    points = np.random.default_rng(0).uniform((2, 0, 0), (20, 9, 10), (50, 3))
+    robot = desk.to_robot(points)
+    assert desk.to_board(robot) == pytest.approx(points)
+    assert desk.forward(desk.joint_angles(robot)) == pytest.approx(robot)
+    with pytest.raises(ValueError, match="reach"):
+        desk.joint_angles(np.array([0.5, 0.0, 0.0]))
+
+
+def test_the_reference_rests_before_and_after_and_its_derivatives_fit(cases: Any) -> None:
+    config = cases("impedance_tracking", "muscle")
+    _, reference = desk.planned(config)
+    assert abs(reference.velocity[:500]).max() < 1e-9
+    assert abs(reference.velocity[-500:]).max() < 1e-9
+    middle = reference.position[3002] - reference.position[2998]
+    assert middle / (4 * config.control_period) == pytest.approx(reference.velocity[3000], rel=1e-3, abs=1e-5)
+    assert reference.tip == pytest.approx(desk.forward(reference.position))
+
+
+def test_nearest_and_plane_return_what_they_know(cases: Any, learned: skills.Skills) -> None:
+    config = cases("unseen_conditions", "main")
+    known = skills.conditions(config)
+    for index in (0, 7):
+        x = known[index].inputs
+        for predict in (unseen_conditions.nearest, unseen_conditions.PREDICTORS["nearest_same"]):
+            assert predict(x, learned.reactions, known, config) == pytest.approx(learned.reactions[index])
+    plane = np.einsum("k,ij->kij", [c.distance + 2 * c.obstacle.height for c in known], np.ones((4, 3)))
+    found = unseen_conditions.plane({"distance": 9.0, "height": 3.0, "direction": 0.4}, plane, known, config)
+    assert found == pytest.approx(15.0)
+
+
+def test_learning_experiments_measure_what_they_simulate(cases: Any) -> None:
+    for module, case in ((style_separation, "one_obstacle"), (fuzzy_generalisation, "main")):
+        config = cases(module.__name__.rpartition(".")[2], case)
+        metrics = module.measure(module.simulate(config, None), config)
+        assert all(np.isfinite(value) for value in metrics.values())
+    config = cases("reactive_learning", "frozen", draws=2)
+    metrics = reactive_learning.measure(reactive_learning.simulate(config, None), config)
+    assert metrics["rmse5"] < metrics["rmse1"] < metrics["no_reaction"]
+
+
+def shortened(config: Config, **changes: Any) -> Config:
+    """A run of one second: hold, quick movement, hold."""
+    demonstration = Config({**config.demonstration, "duration": 0.6, "rate": 500.0})
+    return Config({**config, "demonstration": demonstration, "hold": 0.2, "pick": 0.1, "release": 0.9, **changes})
+
+
+def test_the_arm_follows_the_plan_and_chatters_above_the_predicted_gain(cases: Any) -> None:
+    metrics = {}
+    for case in ("gain10", "gain45"):
+        config = shortened(cases("impedance_stability", case))
+        metrics[case] = impedance_stability.measure(impedance_stability.simulate(config, None), config)
+    assert metrics["gain10"]["rms_error"] < 0.2
+    assert metrics["gain10"]["predicted_radius"] < 1 < metrics["gain45"]["predicted_radius"]
+    assert metrics["gain45"]["torque_travel"] > 10 * metrics["gain10"]["torque_travel"]
+
+
+def test_a_push_moves_the_arm_by_its_compliance_without_estimation(cases: Any) -> None:
+    config = shortened(cases("obstacle_contact", "high_plain"), rise=-3.0)
+    config["hold"] = 0.5
+    config["pushes"] = Config({"before": [0.1, 0.2], "behind": [0.2, 0.3], "rest": [1.15, 1.7]})
+    metrics = obstacle_contact.measure(obstacle_contact.simulate(config, None), config)
+    assert metrics["static_deviation"] == pytest.approx(metrics["predicted_deviation"], rel=0.15)
+    assert metrics["contact_peak"] == 0.0

@@ -1,0 +1,110 @@
+"""Chapter 8 on short runs: what must hold whatever the length of the simulation."""
+
+import importlib
+
+import numpy as np
+import pytest
+
+from dexrepro import chapters
+from dexrepro.chapters.chapter8 import circle_tracking, sponge, task, unknown_object
+from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
+from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, optimal_gain
+from dexrepro.runner import generator, live
+
+CASES = {name: experiment_cases(compose_chapter("8"), name) for name in ("circle_tracking", "unknown_object", "sponge")}
+
+
+def run(experiment, case, **changes):
+    module = importlib.import_module(f"dexrepro.chapters.chapter8.{experiment}")
+    values = {**CASES[experiment][case], **changes, "perturbation": 0.0, "seed": 0, "case": case}
+    config = live(values)
+    return module.simulate(config, lambda purpose: generator(0, experiment, purpose)), config
+
+
+def test_the_arm_starts_where_the_book_says():
+    recording, config = run("circle_tracking", "broad", duration=0.01, record_every=1)
+    assert recording["arm.tip"][0, :2] == pytest.approx(config.start, abs=1e-9)
+    assert recording["error"][0] == pytest.approx([0.025, 0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("case", ["broad", "fuzzy", "friction_broad", "friction_fuzzy"])
+def test_the_start_transient_ends_inside_the_bounds(case):
+    recording, config = run("circle_tracking", case, duration=0.6)
+    assert recording.status == "finished"
+    assert np.all(np.abs(recording["error"][-20:]) < 0.25 * np.array(config.bound))
+
+
+def test_elbow_down_with_rate_one_violates_a_bound_and_the_run_says_so():
+    recording, config = run("circle_tracking", "down_unit")
+    assert "error bound of axis y violated" in recording.status
+    assert circle_tracking.measure(recording, config)["violated_at"] == pytest.approx(0.052, abs=0.01)
+
+
+def test_matching_gives_the_fixed_network_the_adaptation_gain_of_the_broad_one():
+    config = live({**CASES["circle_tracking"]["fuzzy_matched"], "perturbation": 0.0})
+    before = float(config.networks[2].gain)
+    factor = circle_tracking.match_rates(config)
+    assert float(config.networks[2].gain) == pytest.approx(factor * before)
+    assert factor == pytest.approx(2.97, abs=0.1)
+
+
+def test_both_elbows_reach_the_same_point():
+    for elbow in (-1, 1):
+        arm = live({**CASES["circle_tracking"]["broad"]["arm"], "elbow": elbow})
+        q = task.joint_angles(arm, np.array([0.125, 0.2]))
+        tip = 0.2 * np.array([np.cos(q[0]) + np.cos(q.sum()), np.sin(q[0]) + np.sin(q.sum())])
+        assert tip == pytest.approx([0.125, 0.2])
+        assert np.sign(q[1]) == elbow
+
+
+@pytest.mark.parametrize("motion", ["circle", "approach"])
+def test_velocity_and_acceleration_belong_to_the_path(motion):
+    path = {
+        "circle": lambda: task.circle(live(CASES["circle_tracking"]["broad"]["path"])),
+        "approach": lambda: sponge.approach(live(CASES["sponge"]["learned"]["path"])),
+    }[motion]()
+    before, here, after = (path(1.3 + shift) for shift in (-1e-5, 0.0, 1e-5))
+    assert (after.position - before.position) / 2e-5 == pytest.approx(here.velocity, abs=1e-8)
+    assert (after.velocity - before.velocity) / 2e-5 == pytest.approx(here.acceleration, abs=1e-8)
+
+
+def test_the_arm_learns_the_optimal_gain_of_an_object_it_knows_nothing_of():
+    recording, config = run("unknown_object", "object_50")
+    metrics = unknown_object.measure(recording, config)
+    assert metrics["gain_error_x"] < 0.01
+    assert metrics["gain_error_s"] < 0.01
+    best = optimal_gain(InteractionModel(50.0, 0.01, -1.0), InteractionCost(70.0, 5.0, 0.05))
+    assert recording["gain"][-1] == pytest.approx(best, rel=0.01)
+
+
+def test_the_gripper_stands_above_the_sponge_and_presses_it():
+    recording, config = run("sponge", "lqr", duration=2.4)
+    assert recording["arm.tip"][0] == pytest.approx([0.77, -0.27, 0.35], abs=5e-5)
+    metrics = sponge.measure(recording, config)
+    assert metrics["bound_used"] < 0.1
+    assert metrics["peak_force"] > 1.0
+    assert np.all(recording["sponge_force.z"] >= 0.0)
+    assert np.all(np.abs(recording["arm.torque"]) <= config.torque_limits)
+
+
+def test_the_printed_control_rate_is_unstable_on_this_model():
+    recording, config = run("sponge", "at_50_hz", duration=1.0)
+    assert sponge.measure(recording, config)["stopped_at"] < 0.6
+
+
+def test_claims_and_errata_speak_of_cases_that_exist():
+    chapter = chapters.load("8")
+    named = [name for claim in chapter.claims for name in claim.metrics]
+    named += [name for erratum in chapter.errata for name in erratum.evidence]
+    for name in named:
+        experiment, *rest = name.split(".")
+        assert len(rest) == 1 or rest[0] in CASES[experiment], name
+
+
+def test_a_variant_that_turns_a_comparison_around_is_marked():
+    metrics = {"a": {"m": 1.0}, "b": {"m": 2.0}, "c": {"m": 3.0}}
+    table = sensitivity_table(
+        [Variant("X", "one", "m", ("c", "b"), ("a", "b")), Variant("X", "two", "m", ("b", "c"), ("a", 1.5))], metrics
+    )
+    assert list(table.flips) == ["yes", "no"]

@@ -1,0 +1,127 @@
+"""Tracking inside prescribed bounds, on a two-link arm integrated by Runge-Kutta steps."""
+
+import numpy as np
+import pytest
+from planar_plant import PlanarPlant
+
+from dexrepro.control.bounded_neural import BoundedNeuralTracking, barrier
+from dexrepro.control.gravity_pd import GravityPD
+from dexrepro.control.prescribed_performance import PerformanceBound
+from dexrepro.networks import AdaptiveNetwork, Gaussians
+
+STEP = 1e-3
+BOUND = PerformanceBound(0.15, 0.02, 2.0)
+
+
+class Model:
+    """The plant's dynamics with all masses multiplied by a factor."""
+
+    def __init__(self, plant, factor=1.0):
+        self.plant, self.factor = plant, factor
+
+    def mass_matrix(self, q):
+        return self.factor * self.plant.dynamics(q, np.zeros(2))[0]
+
+    def gravity(self, q):
+        return self.factor * self.plant.dynamics(q, np.zeros(2))[2]
+
+    def bias(self, q, dq):
+        _, coriolis, gravity = self.plant.dynamics(q, dq)
+        return self.factor * (coriolis @ dq + gravity)
+
+
+PLANT = PlanarPlant(mass=0.3, length=0.25, inertia=0.002)
+
+
+def desired(t):
+    phase = np.array([2.0, 3.0]) * t
+    rate = np.array([2.0, 3.0])
+    size = np.array([0.3, 0.2])
+    return np.array([0.4, 0.8]) + size * np.sin(phase), size * rate * np.cos(phase), -size * rate**2 * np.sin(phase)
+
+
+def network(gain=3.0):
+    samples = np.array([np.concatenate([q / 0.35, dq / 1.2]) for q, dq, _ in map(desired, np.linspace(0, 6, 30))])
+    return AdaptiveNetwork(Gaussians(samples, np.sqrt(2)), 2, gain=gain, leakage=0.01, step=STEP)
+
+
+def law(factor=0.7, learner=None, **options):
+    settings = {"convergence": 10.0, "velocity_gain": 0.5, "barrier_gain": 5e-3, "dt": STEP, "torque_limit": 5.0}
+    return BoundedNeuralTracking(Model(PLANT, factor), learner, bound=BOUND, **{**settings, **options})
+
+
+def run(tracking, offset=(0.05, -0.05), duration=3.0):
+    q, dq = desired(0.0)[0] - np.array(offset), np.zeros(2)
+    errors = []
+    for k in range(round(duration / STEP)):
+        target = desired(k * STEP)
+        errors.append(target[0] - q)
+        q, dq = PLANT.step(q, dq, tracking(q, dq, target), 0.0, STEP)
+    return np.array(errors)
+
+
+def usage(errors):
+    return np.abs(BOUND.usage(errors, BOUND.nu(STEP * np.arange(len(errors)))[:, None])).max()
+
+
+def test_errors_vanish_with_an_exact_model_and_no_network():
+    errors = run(law(factor=1.0, barrier_gain=0.0))
+    assert np.abs(errors[-1]).max() < 1e-3
+    assert usage(errors) < 1
+
+
+def test_network_makes_up_for_a_wrong_model():
+    plain, learned = run(law()), run(law(learner=network()))
+    late = slice(2000, None)
+    assert usage(learned) < 1
+    assert np.abs(learned[late]).max() < 0.3 * np.abs(plain[late]).max()
+
+
+def test_printed_sign_of_the_network_drives_the_errors_out_of_the_bound():
+    assert usage(run(law(learner=network(), network_sign=-1))) > 1
+
+
+def test_barrier_term_keeps_the_bound_where_it_would_be_left():
+    assert usage(run(law(barrier_gain=0.0, velocity_gain=0.15))) > 1
+    assert usage(run(law(barrier_gain=2e-2, velocity_gain=0.15))) < 1
+
+
+def test_printed_gain_vanishes_with_the_bound_s_rate():
+    errors = run(law(barrier_gain=0.0, virtual_gain="printed"))
+    assert np.abs(errors[-1]).max() > np.abs(run(law(barrier_gain=0.0))[-1]).max()
+
+
+def test_virtual_gain_s_derivative_is_that_of_the_gain():
+    for form in ("corrected", "printed"):
+        tracking = law(virtual_gain=form)
+        gains = [tracking._virtual_gain() for _ in range(4)]
+        assert (gains[2][1] - gains[0][1]) / (2 * STEP) == pytest.approx(gains[1][2], rel=1e-4)
+
+
+def test_contact_torque_is_taken_off_and_the_torque_limited():
+    tracking, target = law(), desired(0.0)
+    q, dq, _ = target
+    plain = tracking(q, dq, target)
+    tracking.reset()
+    np.testing.assert_allclose(tracking(q, dq, target, np.array([0.1, -0.2])), plain - [0.1, -0.2])
+    assert np.abs(law(torque_limit=0.05)(q - 1.0, dq, target)).max() == pytest.approx(0.05)
+
+
+def test_barrier_value_has_the_derivative_of_the_corrected_equation():
+    bound = PerformanceBound(0.15, 0.02, 2.0, lower=0.6, upper=0.8)
+    error, rate, dt = np.array([0.03, -0.02]), np.array([0.1, 0.05]), 1e-6
+    values = [barrier((error + shift * rate)[None], bound, [0.4 + shift])[0] for shift in (-dt, dt)]
+    nu, ratio, _ = bound.rate(0.4)
+    limit = bound.limit(error, nu)
+    expected = np.sum((error * rate - error**2 * ratio) / (limit**2 - error**2))
+    assert (values[1] - values[0]) / (2 * dt) == pytest.approx(expected, rel=1e-6)
+    assert np.isinf(barrier(np.array([[0.2, 0.0]]), bound, [0.0])[0])
+
+
+def test_gravity_pd_holds_the_arm_still_with_an_exact_model():
+    tracking = GravityPD(Model(PLANT), stiffness=1.0, damping=0.1)
+    q = np.array([0.4, 0.8])
+    torque = tracking(q, np.zeros(2), (q, np.zeros(2), np.zeros(2)))
+    np.testing.assert_allclose(torque, Model(PLANT).gravity(q))
+    stiffer = tracking(q - 0.1, np.zeros(2), (q, np.zeros(2), np.zeros(2)))
+    np.testing.assert_allclose(stiffer - torque, 0.1)

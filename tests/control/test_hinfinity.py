@@ -1,0 +1,77 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dexrepro.control.hinfinity import HInfinityTracking, achieved_norm, hinfinity_gain
+from dexrepro.control.task_space import ArmState, Motion
+
+
+class PointMass:
+    """A mass on a plane under gravity and viscous friction: every term is known."""
+
+    def __init__(self, mass=2.0, friction=0.0):
+        self.mass, self.friction = mass, friction
+
+    def mass_matrix(self, position):
+        return self.mass * np.eye(2)
+
+    def bias(self, position, velocity):
+        return self.friction * velocity + np.array([0.0, 9.8 * self.mass])
+
+    def jacobian(self, position):
+        return np.eye(2)
+
+
+def settle(law, plant, duration=2.0, dt=1e-3, push=0.0):
+    position, velocity, target = np.array([0.1, 0.0]), np.zeros(2), Motion(np.zeros(2), np.zeros(2), np.zeros(2))
+    for _ in range(round(duration / dt)):
+        force = law(ArmState(position, velocity, position, velocity), target, np.zeros(2))
+        acceleration = (force + push - plant.bias(position, velocity)) / plant.mass
+        velocity = velocity + dt * acceleration
+        position = position + dt * velocity
+    return position
+
+
+def test_the_design_of_the_comparison_has_the_known_gain_and_norm():
+    gain = hinfinity_gain((1e6, 400.0), effort=1.0, attenuation=1.5)
+    assert gain == pytest.approx([1341.6, 74.5], rel=1e-3)
+    assert achieved_norm(gain, (1e6, 400.0), 1.0) == pytest.approx(1.292, abs=1e-3)
+
+
+@given(st.floats(1e2, 1e6), st.floats(1.0, 1e3), st.floats(1.05, 5.0))
+@settings(max_examples=20, deadline=None)
+def test_the_attenuation_asked_for_is_reached(position_weight, velocity_weight, attenuation):
+    weights = (position_weight, velocity_weight)
+    assert achieved_norm(hinfinity_gain(weights, 1.0, attenuation), weights, 1.0) <= attenuation * (1 + 1e-6)
+
+
+def test_an_attenuation_below_the_limit_is_refused():
+    with pytest.raises(ValueError, match="cannot be reached"):
+        hinfinity_gain((1.0, 1.0), effort=4.0, attenuation=2.0)
+
+
+def test_an_exact_model_leaves_no_error_and_a_push_leaves_the_static_one():
+    law = HInfinityTracking(PointMass(), hinfinity_gain((1e6, 400.0), 1.0, 1.5), dt=1e-3)
+    assert settle(law, PointMass()) == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert settle(law, PointMass(), push=3.0) == pytest.approx([3.0 / (2.0 * law.gain[0])] * 2, rel=1e-3)
+
+
+def test_integral_action_removes_the_error_of_a_wrong_model():
+    gain = hinfinity_gain((4e7, 6e5, 800.0), 1.0, 1.5)
+    wrong = PointMass(mass=1.6)
+    static = HInfinityTracking(wrong, hinfinity_gain((1e6, 400.0), 1.0, 1.5), dt=1e-3)
+    assert abs(settle(static, PointMass(friction=1.0))[1]) > 1e-3
+    law = HInfinityTracking(wrong, gain, dt=1e-3)
+    assert settle(law, PointMass(friction=1.0), duration=4.0) == pytest.approx([0.0, 0.0], abs=1e-6)
+
+
+def test_the_drift_of_the_jacobian_is_part_of_the_acceleration():
+    class Crank(PointMass):
+        def jacobian(self, position):
+            return np.diag(np.cos(position))
+
+    law = HInfinityTracking(Crank(), (0.0, 0.0), dt=1e-3)
+    position, velocity = np.array([0.3, -0.4]), np.array([0.7, 0.2])
+    _, drift = law._kinematics(position, velocity, axes=2)
+    assert drift == pytest.approx(-np.sin(position) * velocity**2, rel=1e-8)

@@ -1,0 +1,181 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dexrepro.control.time_delay_impedance import (
+    ConstantImpedance,
+    GravityImpedance,
+    MuscleImpedance,
+    RobustImpedance,
+    TimeDelayImpedance,
+    sampled_spectral_radius,
+)
+
+DT = 1e-3
+
+
+class Axis:
+    """One link that swings in the vertical plane: M, G = w cos q, no Coriolis torque."""
+
+    def __init__(self, mass=2e-3, weight=0.0):
+        self.mass, self.weight = mass, weight
+
+    def mass_matrix(self, q):
+        return np.array([[self.mass]])
+
+    def gravity(self, q):
+        return self.weight * np.cos(q)
+
+    def bias(self, q, dq):
+        return self.gravity(q)
+
+
+class TwoLinks:
+    """Planar arm with two links in the horizontal plane: has Coriolis torques."""
+
+    a, b, c = 3.0, 0.8, 1.1
+
+    def mass_matrix(self, q):
+        coupling = self.c + self.b * np.cos(q[1])
+        return np.array([[self.a + 2 * self.b * np.cos(q[1]), coupling], [coupling, self.c]])
+
+    def gravity(self, q):
+        return np.zeros(2)
+
+    def bias(self, q, dq):
+        h = self.b * np.sin(q[1])
+        return np.array([-h * dq[1] * (2 * dq[0] + dq[1]), h * dq[0] ** 2])
+
+
+def run(plant, law, error=0.0, disturbance=lambda t: 0.0, duration=0.5, stiffness=0.0):
+    """Follow a slow sine with the exact axis; returns the errors and the values of r."""
+    q, dq = np.array([-error]), np.zeros(1)
+    errors, filtered = [], []
+    for t in np.arange(0, duration, DT):
+        desired = (np.array([1 - np.cos(t)]), np.array([np.sin(t)]), np.array([np.cos(t)]))
+        torque = law(q, dq, desired, stiffness)
+        errors.append(float(desired[0][0] - q[0]))
+        filtered.append(float(law.error[0]))
+        dq = dq + DT * (torque + disturbance(t) - plant.bias(q, dq)) / plant.mass
+        q = q + DT * dq
+        if abs(dq[0]) > 200:
+            return np.array([*errors, np.inf]), np.array(filtered)
+    return np.array(errors), np.array(filtered)
+
+
+def test_error_shrinks_by_the_predicted_factor_each_period():
+    """Without disturbance and with the exact model r(k+1) = (1 - L K / M) r(k)."""
+    plant = Axis()
+    law = TimeDelayImpedance(plant, DT, 20.0, ConstantImpedance(0.4), estimation=True)
+    _, r = run(plant, law, error=0.1, duration=0.01)
+    assert r[2:] / r[1:-1] == pytest.approx(1 - DT * 0.4 / plant.mass, abs=2e-2)
+
+
+def test_constant_force_is_cancelled_with_estimation_and_yields_without():
+    plant = Axis(weight=0.05)
+    push = 0.1
+    errors = {
+        on: run(
+            plant,
+            TimeDelayImpedance(plant, DT, 20.0, ConstantImpedance(0.5), estimation=on),
+            disturbance=lambda t: push,
+            duration=2.0,
+        )[0][-1]
+        for on in (True, False)
+    }
+    assert abs(errors[True]) < 1e-5
+    assert errors[False] == pytest.approx(-push / (0.5 * 20.0), rel=0.01)
+
+
+def test_estimation_absorbs_a_wrong_model():
+    plant = Axis(mass=2e-3, weight=0.1)
+    model = Axis(mass=1.2e-3, weight=0.02)
+    with_estimate, without = (
+        abs(run(plant, TimeDelayImpedance(model, DT, 20.0, ConstantImpedance(0.5), estimation=on))[0][100:]).max()
+        for on in (True, False)
+    )
+    assert with_estimate < 0.01 * without
+
+
+@pytest.mark.parametrize("sign", ["printed", "printed_first_line"])
+def test_printed_signs_diverge(sign):
+    plant = Axis()
+    errors, _ = run(plant, TimeDelayImpedance(plant, DT, 20.0, ConstantImpedance(0.5), sign=sign), error=1e-3)
+    assert abs(errors).max() > 1.0
+
+
+@pytest.mark.parametrize(("share", "stable"), [(0.95, True), (1.05, False)])
+@pytest.mark.parametrize("ratio", [0.3, 1.0, 1.6])
+def test_stability_ends_at_the_sampled_bound(ratio, share, stable):
+    """0 < K < (4 M - 2 Mb) / L for one axis."""
+    plant, model = Axis(mass=2e-3), Axis(mass=2e-3 * ratio)
+    gain = share * (4 * plant.mass - 2 * model.mass) / DT
+    errors, _ = run(plant, TimeDelayImpedance(model, DT, 5.0, ConstantImpedance(gain)), error=1e-3, duration=1.5)
+    assert (abs(errors).max() < 0.1) == stable
+    assert (sampled_spectral_radius(plant.mass, model.mass, gain, DT) < 1) == stable
+
+
+def test_a_model_more_than_twice_too_heavy_is_unstable_for_every_gain():
+    assert min(sampled_spectral_radius(1e-3, 2.1e-3, gain, DT) for gain in np.geomspace(1e-4, 10, 50)) > 1
+
+
+@given(st.floats(0.01, 0.95), st.floats(0.05, 1.95), st.floats(0.05, 1.2))
+@settings(deadline=None, max_examples=40)
+def test_spectral_radius_agrees_with_the_jury_criterion(mass, ratio, share):
+    bound = (4 - 2 * ratio) * mass / DT
+    radius = sampled_spectral_radius(mass, ratio * mass, share * bound, DT)
+    assert (radius < 1) == (share < 1) or abs(share - 1) < 1e-6
+
+
+def test_coriolis_part_is_the_christoffel_matrix_times_the_reference_velocity():
+    model = TwoLinks()
+    law = TimeDelayImpedance(model, DT, 10.0, ConstantImpedance(0.0), estimation=False)
+    q, dq, dq_d = np.array([0.3, 0.9]), np.array([0.7, -0.4]), np.array([-0.2, 0.5])
+    h = model.b * np.sin(q[1])
+    coriolis = np.array([[-h * dq[1], -h * (dq[0] + dq[1])], [h * dq[0], 0.0]])
+    e = np.array([0.02, -0.01])
+    de = dq_d - dq
+    torque = law(q, dq, (q + e, dq_d, np.zeros(2)))
+    assert torque == pytest.approx(model.mass_matrix(q) @ (10 * de) + coriolis @ (dq_d + 10 * e))
+
+
+def test_impedances_follow_their_equations():
+    r = np.array([0.5, -2.0, 0.01])
+    assert MuscleImpedance(10.0)(0.06, r) == pytest.approx([0.6] * 3)
+    assert RobustImpedance(10.0, 0.3, 1.0, 0.2)(0.06, r) == pytest.approx([0.6, 0.6, 1.5])
+    assert (RobustImpedance(0.0, 0.3, 1.0, 1e-9)(0.0, r) * r) == pytest.approx(0.3 * np.sign(r))
+
+
+def test_matched_torque_filter_keeps_a_filtered_velocity_stable():
+    """Velocity from a first-order low pass of differences of a quantised angle: only the matched filter is stable."""
+    plant, step, a = Axis(), 2.7e-4, 0.1
+    worst = {}
+    for matched in (True, False):
+        law = TimeDelayImpedance(
+            plant, DT, 20.0, ConstantImpedance(0.3), velocity_filter=a if matched else 1.0, torque_limit=5.0
+        )
+        q = dq = filtered = previous = 0.0
+        errors = []
+        for t in np.arange(0, 2.0, DT):
+            measured = step * round(q / step)
+            filtered += a * ((measured - previous) / DT - filtered)
+            previous = measured
+            desired = (np.array([1 - np.cos(t)]), np.array([np.sin(t)]), np.array([np.cos(t)]))
+            torque = float(law(np.array([measured]), np.array([filtered]), desired)[0])
+            errors.append(1 - np.cos(t) - q)
+            dq += DT * (torque + 0.01) / plant.mass
+            q += DT * dq
+        worst[matched] = np.sqrt(np.mean(np.square(errors)))
+    assert worst[True] < 1e-3
+    assert worst[False] > 10 * worst[True]
+
+
+def test_plain_impedance_holds_gravity_and_yields_to_a_push_by_its_gain():
+    plant = Axis(weight=0.05)
+    law = GravityImpedance(plant, DT, 20.0, ConstantImpedance(0.5))
+    assert law(np.array([0.3]), np.zeros(1), (np.array([0.3]), np.zeros(1), np.zeros(1))) == pytest.approx(
+        plant.gravity(np.array([0.3]))
+    )
+    torque = law(np.array([0.0]), np.zeros(1), (np.array([0.01]), np.zeros(1), np.zeros(1)))
+    assert torque - plant.gravity(np.zeros(1)) == pytest.approx(0.5 * 20.0 * 0.01)

@@ -1,0 +1,55 @@
+import numpy as np
+import pytest
+
+from dexrepro.physics.soft_object import Cushion, SoftObject
+from dexrepro.physics.world import World
+from dexrepro.robots.planar import planar
+
+SOFT = dict(fast=1.0, slow=0.2, fast_time=0.05, slow_time=4.0)
+
+
+def test_cushion_relaxes_to_its_elastic_force_and_never_pulls():
+    cushion = Cushion(100.0, 1e-3, **SOFT)
+    forces = [cushion.force(0.05) for _ in range(40_000)]
+    assert forces[-1] == pytest.approx(2 * 100.0 * 0.05, rel=1e-3)
+    assert forces[0] == pytest.approx(2 * 100.0 * 0.05 * 2.2, rel=0.02)
+    assert cushion.force(-0.01) == 0.0
+    assert cushion.force(0.001) == 0.0  # the slow branch has not come back yet
+
+
+def test_cushion_works_on_batches():
+    members = [Cushion(100.0, 1e-3, **SOFT) for _ in range(2)]
+    batch = Cushion(100.0, 1e-3, **SOFT)
+    for x in (0.01, 0.02, -0.01):
+        np.testing.assert_allclose(
+            batch.force(np.array([x, 0.5 * x])), [m.force(share * x) for m, share in zip(members, (1.0, 0.5))]
+        )
+
+
+def held_body(friction: float, duration: float = 1.0, squeeze: float = 0.1):
+    """Two arms that cannot move hold a 0.3 kg body against gravity."""
+    with World(gravity=(0, 0, -9.81)) as world:
+        for name, x in (("left", 0.0), ("right", 0.4)):
+            arm = planar((0.1,), (1e6,), base=(x - 0.1, 0.0), effort=1e9)
+            world.add_arm(name, arm, np.zeros(1))
+        world.add_sphere("ball", 0.05, (0.2, 0.0, 0.0), mass=0.3, collides=False)
+        cushions = (Cushion(100.0, 1e-3, **SOFT), Cushion(100.0, 1e-3, **SOFT))
+        world.add(
+            SoftObject("grip", "ball", ("left", "right"), cushions, length=0.4 + squeeze, friction=friction,
+                       shear=500.0, shear_damping=10.0, scale=lambda t: 1.0)
+        )  # fmt: skip
+        return world.run(duration)
+
+
+def test_friction_carries_the_weight_with_the_shear_it_needs():
+    run = held_body(friction=0.6)
+    sag = -run["ball.pose"][-1, 2]
+    assert sag == pytest.approx(0.3 * 9.81 / (2 * 500.0), rel=0.02)
+    assert run["grip.slip"][-1] == 0.0
+    np.testing.assert_allclose(run["grip.force_left"], run["grip.force_right"], rtol=1e-6)
+
+
+def test_without_enough_friction_the_body_slips_and_falls():
+    run = held_body(friction=0.1)
+    assert run["ball.pose"][-1, 2] < -0.1
+    assert run["grip.slip"][-1] > 0.1
