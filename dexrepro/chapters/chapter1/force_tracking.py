@@ -184,7 +184,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
 def _draw_arms(recording: Recording, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(1, 4, height=2.0, sharex=True, sharey=True)
+    figure, axes = style.subplots(1, 4, height=2.3, sharex=True, sharey=True)
     chains = [PlanarChain(config.arm.lengths, config.arm.masses, tuple(base)) for base in config.bases.values()]
     for axis, instant in zip(axes, np.linspace(0, recording.time[-1], 4)):
         joints = recording["joints"][np.argmin(np.abs(recording.time - instant))]
