@@ -99,10 +99,11 @@ def _parser() -> argparse.ArgumentParser:
 def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
     arguments = [quoted(argument) for argument in arguments]
-    if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
-        _check_sweep([argument for argument in arguments if not argument.startswith("-") and "=" in argument])
-        return _hydra_run(arguments)
     extra_dir, overrides = _config_dir_option(arguments)
+    if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
+        given = [text for text in overrides if not text.startswith("-") and ("=" in text or text.startswith("~"))]
+        flags = [argument for argument in arguments if argument not in given]
+        return _hydra_run([*flags, *_check_sweep(given, extra_dir), *given])  # argparse wants them in this order
     return run_overrides(overrides, extra_dir)
 
 
@@ -127,7 +128,19 @@ def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
         elif argument.startswith("--config-dir="):
             extra_dir = argument.partition("=")[2]
             rest.remove(argument)
+    if extra_dir is not None:
+        _make_importable(extra_dir)
     return extra_dir, rest
+
+
+def _make_importable(folder: str) -> None:
+    """Let ``_target_`` name classes of files in the user's folder, here and in the processes started from here."""
+    if not Path(folder).is_dir():
+        from dexrepro.config import InputError
+
+        raise InputError(f"--config-dir = {folder} is not allowed: there is no such folder")
+    if (path := str(Path(folder).resolve())) not in sys.path:
+        sys.path.insert(0, path)
 
 
 def run_overrides(overrides: Sequence[str], extra_dir: str | None = None, workers: int | None = None) -> int:
@@ -136,7 +149,7 @@ def run_overrides(overrides: Sequence[str], extra_dir: str | None = None, worker
     from dexrepro.progress import Bar, Lines, Silent
     from dexrepro.runner import Outcome, plan_chapter, run_plans
 
-    numbers, rest = chapters_of(overrides)
+    numbers, rest = chapters_of(overrides, extra_dir)
     plans: list[Any] = []
     skipped: dict[str, str] = {}
     settings: dict[str, Any] = {}
@@ -172,10 +185,11 @@ def positive_workers(value: Any) -> int | None:
     raise InputError(f"workers = {value} is not allowed: it must be a whole number of 1 or greater")
 
 
-def chapters_of(overrides: Iterable[str]) -> tuple[list[str], list[str]]:
+def chapters_of(overrides: Iterable[str], extra_dir: str | None = None) -> tuple[list[str], list[str]]:
     """Chapters that overrides select, and the other overrides.
 
-    Without ``chapter=`` the chapter follows from the figure, the experiment or the keys named; else it is the book.
+    Without ``chapter=`` the chapter follows from the figure, the experiment or the keys named, also in the user's own
+    files of ``extra_dir``; else it is the book.
     """
     from dexrepro import chapters
     from dexrepro.config import InputError
@@ -193,12 +207,12 @@ def chapters_of(overrides: Iterable[str]) -> tuple[list[str], list[str]]:
             raise InputError(f"unknown chapter '{number}'; chapters: {', '.join(chapters.numbers())}")
     if chosen:
         return chosen, rest
-    return _implied_chapters(rest) or list(chapters.numbers()), rest
+    return _implied_chapters(rest, extra_dir) or list(chapters.numbers()), rest
 
 
-def _implied_chapters(overrides: Sequence[str]) -> list[str]:
+def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
     from dexrepro import chapters
-    from dexrepro.config import InputError, nearest
+    from dexrepro.config import InputError, nearest, own_keys
 
     values = dict(text.partition("=")[::2] for text in overrides)
     figure = values.get("figure", "null").strip("'\"")
@@ -214,15 +228,17 @@ def _implied_chapters(overrides: Sequence[str]) -> list[str]:
         if name not in owner:
             raise InputError(f"unknown experiment '{name}': {nearest(name, owner)}")
     named += [key.lstrip("+~").partition(".")[0] for key in values]
+    named += own_keys(overrides, extra_dir) if extra_dir else []
     return list(dict.fromkeys(owner[name] for name in named if name in owner))
 
 
-def _check_sweep(overrides: Sequence[str]) -> None:
-    """Refuse what no job of a sweep could use, before Hydra starts any."""
+def _check_sweep(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
+    """Refuse what no job of a sweep could use before Hydra starts any; the override of a chapter meant, not named."""
     from dexrepro.config import check_overrides, compose_chapter
 
-    numbers, rest = chapters_of(overrides)
+    numbers, rest = chapters_of(overrides, extra_dir)
     check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
+    return [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and rest == list(overrides) else []
 
 
 def _hydra_run(arguments: list[str]) -> int:
@@ -243,7 +259,11 @@ def _hydra_job(config: Any) -> None:
     chapter = HydraConfig.get().runtime.choices.get("chapter")
     overrides = [text for text in task if not text.startswith("chapter=")]
     selected = [f"chapter='{chapter}'"] if chapter else []
-    if run_overrides([*selected, *overrides], workers=1) != OK:
+    sources = HydraConfig.get().runtime.config_sources
+    extra_dir = next((source.path for source in sources if source.provider == "command-line"), None)
+    if extra_dir is not None:
+        _make_importable(extra_dir)
+    if run_overrides([*selected, *overrides], extra_dir, workers=1) != OK:
         raise RuntimeError("some cases failed")
 
 

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import yaml
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
@@ -128,11 +129,29 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
     """
     shipped = _compose([f"chapter='{chapter}'"])
     check_overrides(overrides, shipped)
-    search = [f"hydra.searchpath=[file://{Path(extra_dir).resolve()}]"] if extra_dir else []
+    search = [f"hydra.searchpath=['file://{Path(extra_dir).resolve()}']"] if extra_dir else []
     try:
-        return _compose([f"chapter='{chapter}'", *overrides, *search])
+        composed = _compose([f"chapter='{chapter}'", *overrides, *search])
     except (HydraException, OmegaConfBaseException) as error:
         raise InputError(" ".join(str(error).split())) from error
+    if extra_dir and (unknown := [key for key in composed if key not in shipped]):
+        raise InputError(
+            f"a file in {extra_dir} sets '{unknown[0]}', which chapter {chapter} does not have: begin it with "
+            "'# @package _global_' and name an experiment of the chapter"
+        )
+    return composed
+
+
+def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
+    """Keys set by the files of a folder that overrides such as ``+own=compare`` choose."""
+    keys: list[str] = []
+    for text in overrides:
+        group, _, options = text.lstrip("+").partition("=")
+        for option in options.strip("[]").split(","):
+            path = Path(folder, group, option.strip("'\" ")).with_suffix(".yaml")
+            if path.is_file():
+                keys += yaml.safe_load(path.read_text()) or {}
+    return keys
 
 
 def _compose(overrides: list[str]) -> dict[str, Any]:
@@ -250,7 +269,7 @@ _NOT_NEGATIVE = re.compile(r"(^|_)(stiffness|damping|friction|noise|noise_std|de
 
 def check_values(config: Mapping[str, Any], where: str) -> None:
     """Refuse values outside their physical range, in one sentence that names key, value and range."""
-    for key, value in _leaves(config):
+    for key, value in leaves(config):
         name = next((part for part in reversed(key.split(".")) if not part.isdigit()), key)
         if not isinstance(value, int | float) or isinstance(value, bool):
             continue
@@ -260,9 +279,9 @@ def check_values(config: Mapping[str, Any], where: str) -> None:
             raise InputError(f"{where}.{key} = {value} is not allowed: it must be greater than 0")
         if _NOT_NEGATIVE.search(name) and value < 0:
             raise InputError(f"{where}.{key} = {value} is not allowed: it must be 0 or greater")
-    leaves = dict(_leaves(config))
-    steps = [v for k, v in leaves.items() if k.rpartition(".")[2] in ("control_period", "step") and _number(v)]
-    for key, value in leaves.items():
+    values = dict(leaves(config))
+    steps = [v for k, v in values.items() if k.rpartition(".")[2] in ("control_period", "step") and _number(v)]
+    for key, value in values.items():
         if key.rpartition(".")[2] == "duration" and _number(value) and steps and value < min(steps):
             raise InputError(
                 f"{where}.{key} = {value} is not allowed: it must be at least one step of {min(steps):g} s"
@@ -271,8 +290,8 @@ def check_values(config: Mapping[str, Any], where: str) -> None:
 
 def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
     """Refuse a text where the shipped configuration has a number."""
-    expected = dict(_leaves(shipped))
-    for key, value in _leaves(config):
+    expected = dict(leaves(shipped))
+    for key, value in leaves(config):
         if _number(expected.get(key)) and isinstance(value, str):
             raise InputError(f"{where}.{key} = '{value}' is not allowed: it must be a number")
 
@@ -281,7 +300,8 @@ def _number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _leaves(node: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
+def leaves(node: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """(dotted key, value) of everything in nested dictionaries and lists."""
     items: Iterable[tuple[Any, Any]] = ()
     if isinstance(node, Mapping):
         items = node.items()
@@ -290,7 +310,7 @@ def _leaves(node: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
     else:
         yield prefix, node
     for key, value in items:
-        yield from _leaves(value, f"{prefix}.{key}" if prefix else str(key))
+        yield from leaves(value, f"{prefix}.{key}" if prefix else str(key))
 
 
 def differences(config: Mapping[str, Any], shipped: Mapping[str, Any], prefix: str = "") -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import glob
 import hashlib
 import importlib.util
 import json
@@ -36,6 +37,7 @@ from dexrepro.config import (
     compose_chapter,
     differences,
     experiment_cases,
+    leaves,
     nearest,
     resolved_block,
 )
@@ -163,7 +165,8 @@ def _plan(
     jobs = []
     for case, values in cases.items():
         values = {**values, "perturbation": perturbation, "seed": seed, "case": case}
-        key = _digest([name, values, source_digest(chapter), [version(package) for package in NUMERICAL]])
+        sources = [source_digest(chapter), own_digest(values), [version(package) for package in NUMERICAL]]
+        key = _digest([name, values, *sources])
         cached = results / ".cache" / name / f"{case}-{key[:16]}"
         jobs.append(Job(chapter, name, case, values, seed, str(cached), bool(config["gui"])))
     return Plan(chapter, name, block, jobs, folder, seed, differs)
@@ -224,6 +227,22 @@ def source_digest(chapter: str, with_report: bool = False) -> str:
             continue
         digest.update(str(parts).encode() + path.read_bytes())
     return digest.hexdigest()
+
+
+def own_digest(values: Mapping[str, Any]) -> str:
+    """Hash of the user's files that a configuration names: data, and modules of classes with what is beside them."""
+    paths: set[Path] = set()
+    for key, text in leaves(values):
+        if not isinstance(text, str) or "." not in text:
+            continue
+        if key.rpartition(".")[2] != "_target_":
+            paths.update(map(Path, glob.glob(text)))
+        elif not text.startswith("dexrepro."):
+            with contextlib.suppress(ImportError, AttributeError, ValueError):
+                module = Path(str(importlib.util.find_spec(text.rpartition(".")[0]).origin))  # type: ignore[union-attr]
+                installed = module.is_relative_to(sys.prefix) or module.is_relative_to(sys.base_prefix)
+                paths.update([module] if installed else module.parent.glob("*.py"))
+    return _digest([[str(path), path.read_bytes().hex()] for path in sorted(paths) if path.is_file()])
 
 
 # --------------------------------------------------------------------------------------------------------- running

@@ -83,6 +83,65 @@ def test_a_case_that_fails_gives_status_1_and_its_reason(shell: Shell) -> None:
     assert "2 more failed: cannot build the objects of the configuration" in done.stderr
 
 
+OWN_LAW = """
+from dexrepro.control.holding_reference import ImpedanceReference
+
+class Further(ImpedanceReference):
+    def __call__(self, position, force):
+        return super().__call__(position, force) + 1e-3
+"""
+OWN_CASE = """# @package _global_
+only: movement_estimation
+movement_estimation:
+  cases:
+    mine: {law._target_: my_law.Further, stiffness: 35, period: 20}
+"""
+
+
+@pytest.fixture
+def mine(tmp_path: Path) -> Path:
+    """A user's folder with a law and a configuration that adds it to a comparison."""
+    folder = tmp_path / "mine"
+    (folder / "own").mkdir(parents=True)
+    (folder / "my_law.py").write_text(OWN_LAW)
+    (folder / "own/compare.yaml").write_text(OWN_CASE)
+    return folder
+
+
+def test_a_folder_of_the_user_brings_law_and_configuration(shell: Shell, tmp_path: Path, mine: Path) -> None:
+    command = f"dexrepro run --config-dir mine +own=compare {SHORT}"
+    done = shell(command)
+    assert done.returncode == 0, done.stderr
+    assert "movement_estimation.mine:" in done.stdout
+    metrics = next(tmp_path.glob("results/runs/movement_estimation-*/metrics.json")).read_text()
+    assert "movement_estimation.mine." in metrics
+    (mine / "my_law.py").write_text(OWN_LAW.replace("1e-3", "2e-3"))
+    again = shell(command).stdout
+    assert "movement_estimation.mine:" in again, "the law has changed, so its case must run again"
+    assert "movement_estimation.k25:" not in again
+
+
+def test_a_folder_of_the_user_takes_part_in_a_sweep(shell: Shell, tmp_path: Path, mine: Path) -> None:
+    done = shell(f"dexrepro run -m --config-dir mine +own=compare 'seed=range(2)' {SHORT} hydra/launcher=joblib")
+    assert done.returncode == 0, done.stderr
+    runs = list(tmp_path.glob("results/runs/movement_estimation-*/metrics.json"))
+    assert len(runs) == 2
+    assert all("movement_estimation.mine." in path.read_text() for path in runs)
+
+
+def test_a_folder_of_the_user_that_cannot_be_used_gets_one_sentence(shell: Shell, mine: Path) -> None:
+    (mine / "own/compare.yaml").write_text(OWN_CASE.partition("\n")[2])
+    for command, sentence in {
+        "--config-dir nowhere +own=compare": "--config-dir = nowhere is not allowed: there is no such folder",
+        "--config-dir mine +own=compar": "Could not find 'own/compar'",
+        "--config-dir mine chapter=2 +own=compare": "begin it with '# @package _global_'",
+    }.items():
+        done = shell(f"dexrepro run {command}")
+        assert done.returncode == 2, command
+        assert sentence in done.stderr
+        assert "Traceback" not in done.stderr
+
+
 def test_ctrl_c_leaves_no_half_result_and_the_next_run_completes_it(tmp_path: Path, shell: Shell) -> None:
     command = [
         sys.executable, "-m", "dexrepro", "run", "figure=2.7", "movement_estimation.duration=3.0", "workers=1", *ONLY_K,

@@ -115,6 +115,11 @@ def _name(case: str, parameters: Config) -> str:
     return case if parameters.law else NAMES[parameters.controller]
 
 
+def _alike(one: Config, other: Config) -> bool:
+    """Whether two cases share the leader's trajectory and the desired force."""
+    return (one.leader.trajectory, one.desired_force) == (other.leader.trajectory, other.desired_force)
+
+
 def _draw_histories(recordings: Any, metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
@@ -124,11 +129,13 @@ def _draw_histories(recordings: Any, metrics: Any, config: Config) -> Any:
     texts = {"a": "s1, s2: force control", "a ": "s3 to s8, Traj. 1", "b": "s9 to s14, Traj. 2", "c": "s15 to s18, 7 N"}
     for (histories, bars), (letter, numbers) in zip(grid, groups.items()):
         cases = [f"s{n}" for n in numbers]
-        for case in cases:
+        like = config.cases[cases[0]]
+        own = [case for case, its in config.cases.items() if its.law and letter != "a" and _alike(its, like)]
+        for case in cases + own:
             parameters, run = config.cases[case], recordings[case]
-            look = dict(style.LINES[LINES[parameters.controller]])
+            look = dict(style.LINES["extra2" if parameters.law else LINES[parameters.controller]])
             look["linestyle"] = "-" if parameters.follower.regulation else (0, (4, 2))
-            name = NAMES[parameters.controller] if parameters.follower.regulation else None
+            name = _name(case, parameters) if parameters.follower.regulation or parameters.law else None
             histories.plot(run.time, run["object.force"], label=name, **look)
             bars.barh(case, shown(metrics[case]["rmse"]), color=look["color"], alpha=1 if name else 0.45)
         histories.axhline(config.cases[cases[0]].desired_force, **style.LINES["reference"])
