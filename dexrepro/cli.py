@@ -203,7 +203,7 @@ def chapters_of(overrides: Iterable[str], extra_dir: str | None = None) -> tuple
         else:
             rest.append(text)
     for number in chosen:
-        if number not in chapters.numbers():
+        if number not in (*chapters.numbers(), chapters.OWN):
             raise InputError(f"unknown chapter '{number}'; chapters: {', '.join(chapters.numbers())}")
     if chosen:
         return chosen, rest
@@ -229,6 +229,8 @@ def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[s
             raise InputError(f"unknown experiment '{name}': {nearest(name, owner)}")
     named += [key.lstrip("+~").partition(".")[0] for key in values]
     named += own_keys(overrides, extra_dir) if extra_dir else []
+    if "scene" in named:
+        return [chapters.OWN]
     return list(dict.fromkeys(owner[name] for name in named if name in owner))
 
 
@@ -237,7 +239,8 @@ def _check_sweep(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
     from dexrepro.config import check_overrides, compose_chapter
 
     numbers, rest = chapters_of(overrides, extra_dir)
-    check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
+    if extra_dir is None:  # what its files add is known to Hydra alone
+        check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
     return [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and rest == list(overrides) else []
 
 

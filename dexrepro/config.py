@@ -128,9 +128,10 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
     Raises InputError with one sentence where an override names no key, cannot be parsed or is out of range.
     """
     shipped = _compose([f"chapter='{chapter}'"])
-    check_overrides(overrides, shipped)
     search = [f"hydra.searchpath=['file://{Path(extra_dir).resolve()}']"] if extra_dir else []
+    added = [text for text in overrides if text.startswith("+")]
     try:
+        check_overrides(overrides, _compose([f"chapter='{chapter}'", *added, *search]) if added else shipped)
         composed = _compose([f"chapter='{chapter}'", *overrides, *search])
     except (HydraException, OmegaConfBaseException) as error:
         raise InputError(" ".join(str(error).split())) from error

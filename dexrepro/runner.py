@@ -125,7 +125,7 @@ def plan_chapter(
     extra_dir: str | None = None,
 ) -> tuple[list[Plan], dict[str, str]]:
     """Plans of the experiments that the configuration selects, and those skipped with the reason."""
-    if chapter not in chapters.numbers():
+    if chapter not in (*chapters.numbers(), chapters.OWN):
         raise InputError(f"unknown chapter '{chapter}'; chapters: {', '.join(chapters.numbers())}")
     config = composed if composed is not None else compose_chapter(chapter, overrides, extra_dir)
     shipped = compose_chapter(chapter)
@@ -161,7 +161,8 @@ def _plan(
     differs += differences({"seed": seed}, {"seed": shipped["seed"]})
     folder = results / f"chapter{chapter}" / name
     if differs:
-        folder = results / "runs" / f"{name}-{_digest([cases, seed])[:10]}"
+        label = block["name"] if chapter == chapters.OWN else name
+        folder = results / "runs" / f"{label}-{_digest([cases, seed])[:10]}"
     jobs = []
     for case, values in cases.items():
         values = {**values, "perturbation": perturbation, "seed": seed, "case": case}
@@ -219,7 +220,7 @@ def source_digest(chapter: str, with_report: bool = False) -> str:
     digest = hashlib.sha1()
     for path in sorted(root.rglob("*.py")):
         parts = path.relative_to(root).parts
-        if parts[0] == "chapters" and len(parts) > 2 and parts[1] != f"chapter{chapter}":
+        if parts[0] == "chapters" and len(parts) > 2 and parts[1] not in (chapter, f"chapter{chapter}"):
             continue
         if parts[0] in ("cli.py", "baselines.py", "progress.py", "study.py", "scaffold.py") or (
             parts[0] == "report" and not with_report
@@ -255,11 +256,18 @@ def generator(seed: int, experiment: str, purpose: str) -> np.random.Generator:
 
 
 def live(config: Mapping[str, Any]) -> Config:
-    """A configuration whose ``_target_`` nodes are objects."""
+    """A configuration whose ``_target_`` nodes are objects; InputError says why one cannot be made."""
     from hydra.utils import instantiate
 
     if "_target_" in json.dumps(finite(config), default=str):
-        config = instantiate(dict(config), _convert_="all")
+        try:
+            config = instantiate(dict(config), _convert_="all")
+        except Exception as error:
+            cause: BaseException = error
+            while cause.__cause__ is not None:
+                cause = cause.__cause__
+            text = " ".join(str(cause).split())
+            raise InputError(f"cannot build the objects of the configuration: {text}") from error
     return Config.of(config)
 
 
@@ -270,11 +278,7 @@ def execute(job: Job) -> dict[str, Any]:
     World.live = job.gui
     experiment = chapters.load(job.chapter).experiment(job.experiment)
     start = time.perf_counter()
-    try:
-        config = live(job.config)
-    except Exception as error:
-        cause = error.__cause__ or error
-        raise InputError(f"cannot build the objects of the configuration: {cause}") from error
+    config = live(job.config)
     recording: Recording = experiment.module.simulate(
         config, lambda purpose: generator(job.seed, job.experiment, purpose)
     )
@@ -425,7 +429,7 @@ def _prune(plan: Plan) -> None:
 def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progress: Progress | None = None) -> Outcome:
     """Run what is missing, assemble what is complete; a failing case does not stop the others."""
     progress = progress or Silent()
-    outcome = Outcome(differs={plan.experiment: plan.differs for plan in plans})
+    outcome = Outcome(differs={plan.experiment: plan.differs for plan in plans if plan.chapter != chapters.OWN})
     waiting: dict[str, set[str]] = {}
     todo: list[Job] = []
     for plan in plans:

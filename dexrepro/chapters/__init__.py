@@ -28,17 +28,21 @@ class Chapter:
         return [claim for claim in self.claims if claim.experiment == experiment]
 
 
+OWN = "own"
+"""Beside the chapters: the scene that a user describes; it is listed, drawn and checked with none of them."""
+
+
 @cache
 def numbers() -> tuple[str, ...]:
     """Numbers of the chapters there are, as text."""
     names = (module.name for module in pkgutil.iter_modules(__path__) if module.ispkg)
-    return tuple(sorted(name.removeprefix("chapter") for name in names))
+    return tuple(sorted(name.removeprefix("chapter") for name in names if name != OWN))
 
 
 @cache
 def load(number: str) -> Chapter:
-    """Import one chapter."""
-    package = importlib.import_module(f"{__name__}.chapter{number}")
+    """Import one chapter, or what is beside them."""
+    package = importlib.import_module(f"{__name__}.{OWN if number == OWN else f'chapter{number}'}")
     return Chapter(
         number=number,
         title=package.TITLE,

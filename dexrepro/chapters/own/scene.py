@@ -1,0 +1,193 @@
+"""An arm, an object and a leader's path of your own, under any force or tracking law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from dexrepro.chapters.own.drivers import driver
+from dexrepro.chapters.own.paths import Path, leader_path
+from dexrepro.config import InputError
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.physics.elements import Elastic, Ends
+from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import RigidBody
+from dexrepro.physics.world import World
+from dexrepro.robots.arm import Arm
+from dexrepro.robots.inverse_kinematics import Unreachable, solve
+
+Array = NDArray[np.float64]
+
+FIGURES = {
+    "own.A": Figure("Path of the end point, its distance from where it should be, and the force along the line.")
+}
+TABLES = {"own.T": "Tracking, force and torque of every case"}
+WATCHED = ("force_along", "Force along the line [N]")
+CHECKED = 25  # points of the path whose reach is checked
+
+
+def model(arm: Arm, gravity: Sequence[float], mass_error: float) -> RigidBodyModel:
+    """What laws may know of the arm."""
+    if not isinstance(arm, Arm):
+        raise ValueError("scene.arm is no arm: name one by its _target_, such as dexrepro.robots.urdf.from_urdf")
+    return RigidBodyModel(arm, gravity, mass_error)
+
+
+def scene(config: Config) -> World:
+    """The arm, the leader as a small sphere that is carried along its path, and the objects."""
+    world = World(step=config.step, gravity=config.gravity, perturbation=config.perturbation)
+    path = leader_path(config)
+    world.add_arm("arm", config.arm, start(config, path), contacts=bool(config.box))
+    world.add_sphere("leader", 0.02, path(0.0).position.tolist(), colour=(0.84, 0.37, 0.0, 1.0), collides=False)
+    world.add(_Carried(path))
+    if config.elastic:
+        world.add(Elastic("object", ("arm", "leader"), unilateral=True, **config.elastic))
+    if config.box:
+        box = dict(config.box)
+        world.add_box("box", box.pop("size"), box.pop("position"), **box)
+    return world
+
+
+def start(config: Config, path: Path) -> Array:
+    """Joint angles (n,) [rad] that put the end point beside the leader.
+
+    Raises InputError that names the point where the path, displaced by the offset, leaves the arm's reach.
+    """
+    arm, found, first = config.arm, config.start, None
+    offset = np.array(config.offset, dtype=float)
+    for time in np.linspace(0.0, config.duration, CHECKED):
+        place = path(time).position + offset
+        try:
+            found = solve(arm, place, start=found, restarts=5)
+        except Unreachable as error:
+            point = ", ".join(f"{value:.3g}" for value in place)
+            raise InputError(f"the point ({point}) m that scene.leader reaches at {time:.3g} s: {error}") from error
+        first = found if first is None else first
+    assert first is not None
+    return first
+
+
+class _Carried:
+    """Moves the leader along its path, velocity included, so that what it holds feels it."""
+
+    name = "path"
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def bind(self, world: Ends) -> Callable[[float], None]:
+        body = world.end("leader")
+        assert isinstance(body, RigidBody)
+
+        def apply(time: float) -> None:
+            position, velocity, _ = self._path(time)
+            body.place(tuple(position.tolist()))
+            body.vx, body.vy, body.vz = velocity.tolist()
+
+        return apply
+
+    def channels(self) -> dict[str, float]:
+        return {}
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    path, offset = leader_path(config), np.array(config.offset, dtype=float)
+    with scene(config) as world:
+        controller = driver(config.law, config, path, np.array(world.arms["arm"].q))
+        length = np.linalg.norm(offset)
+        recording = world.run(
+            config.duration,
+            {"arm": controller},
+            probes={"leader.pose": lambda: path(world.time).position, "reference": lambda: controller.reference},
+            on_divergence="stop",
+        )
+    force = recording["arm.force"]
+    recording.series["force_along"] = force @ offset / length if length else np.linalg.norm(force, axis=1)
+    return recording
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    force, torque, limits = recording["force_along"], np.abs(recording["arm.torque"]), config.arm.effort
+    wanted = config.desired_force
+    bounded = np.isfinite(limits).any()
+    return {
+        "rmse": _rms(distance(recording, config)),
+        "peak_distance": float(distance(recording, config).max()),
+        "force_rmse": None if wanted is None else _rms(force - wanted),
+        "force_peak": float(np.abs(force).max()),
+        "saturated": float((torque >= 0.999 * limits).any(axis=1).mean()) if bounded else None,
+        "simulated": float(recording.simulated),
+    }
+
+
+def distance(recording: Recording, config: Config) -> Array:
+    """How far the end point is from where leader and offset put it, (N,) [m]; of a planar arm in its plane."""
+    gap = recording["arm.tip"] - recording["leader.pose"] - np.array(config.offset, dtype=float)
+    result: Array = np.linalg.norm(gap, axis=1)
+    return result
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    from dexrepro.report import style
+
+    figure, (plan, error, force) = style.subplots(1, 3, height=2.5)
+    ranges = np.ptp(np.vstack([run["arm.tip"] for run in recordings.values()]), axis=0)
+    across, up = sorted(np.argsort(-ranges, kind="stable")[:2])
+    kinds = [kind for kind in style.LINES if kind not in ("reference", "printed")]
+    for index, (case, run) in enumerate(recordings.items()):
+        line = style.LINES[kinds[index % len(kinds)]]
+        plan.plot(run["arm.tip"][:, across], run["arm.tip"][:, up], label=case, **line)
+        error.plot(run.time, 1e3 * distance(run, config.cases[case]), **line)
+        force.plot(run.time, run["force_along"], **line)
+    first, case = next(iter(recordings.values())), next(iter(config.cases.values()))
+    goal = first["leader.pose"] + np.array(case.offset)
+    plan.plot(goal[:, across], goal[:, up], label="leader + offset", **style.LINES["reference"])
+    if case.desired_force is not None:
+        force.axhline(case.desired_force, **style.LINES["reference"])
+    plan.set(xlabel=f"{'xyz'[across]} [m]", ylabel=f"{'xyz'[up]} [m]", aspect="equal")
+    plan.set_adjustable("datalim")
+    error.set(xlabel="Time [s]", ylabel="Distance [mm]")
+    force.set(xlabel="Time [s]", ylabel="Force along the line [N]")
+    for axes, letter, text in zip((plan, error, force), "abc", ("path", "off leader + offset", "force")):
+        style.panel(axes, letter, text)
+    figure.legend(loc="outside lower center", ncols=5)
+    best = {
+        f"{text}, {scale * min(values.values()):.3g} {unit} RMS": min(values, key=lambda name: values[name])
+        for key, text, scale, unit in (
+            ("rmse", "stays closest", 1e3, "mm"),
+            ("force_rmse", "holds the force best", 1, "N"),
+        )
+        if (values := {case: float(m[key]) for case, m in metrics.items() if m[key] is not None})  # type: ignore[arg-type]
+    }
+    style.title(figure, f"{config.name}: " + "; ".join(f"{case} {text}" for text, case in best.items()))
+    return {"own.A": figure}
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
+) -> dict[str, pd.DataFrame]:
+    names = {
+        "rmse": "RMSE [m]",
+        "peak_distance": "largest distance [m]",
+        "force_rmse": "force RMSE [N]",
+        "force_peak": "largest force [N]",
+        "saturated": "share of time at a torque limit",
+    }
+    rows = [
+        {
+            "case": case,
+            "law": config.cases[case].law["_target_"],
+            **{text: metrics[case][name] for name, text in names.items()},
+            "status": run.status,
+        }
+        for case, run in recordings.items()
+    ]
+    return {"own.T": pd.DataFrame(rows)}

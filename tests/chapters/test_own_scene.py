@@ -1,0 +1,162 @@
+"""A scene of the user's own runs under every family of laws; what cannot be used gets one sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dexrepro.chapters.own import scene
+from dexrepro.config import InputError, compose_chapter, experiment_cases
+from dexrepro.experiment import Recording
+from dexrepro.runner import live
+
+URDF = """
+<robot name="tiny">
+  <link name="base"/>
+  <joint name="shoulder" type="revolute"> <parent link="base"/> <child link="upper"/> <axis xyz="0 0 1"/>
+    <limit lower="-3" upper="3" effort="20" velocity="10"/> </joint>
+  <link name="upper"> <inertial> <origin xyz="0.2 0 0"/> <mass value="1"/>
+    <inertia ixx="0.002" iyy="0.015" izz="0.015"/> </inertial> </link>
+  <joint name="elbow" type="revolute"> <origin xyz="0.4 0 0"/> <parent link="upper"/> <child link="fore"/>
+    <axis xyz="0 0 1"/> <limit lower="-3" upper="3" effort="10" velocity="10"/> </joint>
+  <link name="fore"> <inertial> <origin xyz="0.15 0 0"/> <mass value="0.8"/>
+    <inertia ixx="0.001" iyy="0.006" izz="0.006"/> </inertial> </link>
+  <joint name="mount" type="fixed"> <origin xyz="0.3 0 0"/> <parent link="fore"/> <child link="tip"/> </joint>
+  <link name="tip"/>
+</robot>
+"""
+TINY = "{_target_: dexrepro.robots.urdf.from_urdf, path: tiny.urdf, end: tip}"
+BAXTER = "{_target_: dexrepro.robots.baxter.baxter, side: right}"
+LINE = "{line: {start: [0.5, 0.1, 0], end: [0.55, 0.15, 0], period: 4}}"
+CONTROL = "dexrepro.control"
+SQUEEZED = ("scene.offset=[-0.25,0,0]", "scene.elastic={stiffness: 100, rest_length: 0.27}", "scene.desired_force=2.0",
+            "scene.leader={line: {start: [0.75, 0.1, 0], end: [0.8, 0.1, 0], period: 4}}")  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "tiny.urdf").write_text(URDF)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def configured(*overrides: str, arm: str = TINY, leader: str = LINE) -> Any:
+    given = (f"scene.arm={arm}", f"scene.leader={leader}", "scene.start=[-0.5,1.0]", "scene.duration=0.5", *overrides)
+    (values,) = experiment_cases(compose_chapter("own", given), "scene").values()
+    return live({**values, "perturbation": 0.0})
+
+
+def run(law: str, *overrides: str, **parts: str) -> tuple[Recording, Any]:
+    config = configured(f"scene.law={{_target_: {CONTROL}.{law}}}", *overrides, **parts)
+    recording = scene.simulate(config, None)
+    assert recording.status == "finished"
+    return recording, scene.measure(recording, config)
+
+
+@pytest.mark.parametrize(
+    ("law", "largest"),
+    [
+        ("joint_pd.JointPD, stiffness: 300, damping: 20", 0.01),
+        ('computed_torque.ComputedTorque, model: "${scene.model}", frequency: 30', 1e-4),
+        ('gravity_pd.GravityPD, model: "${scene.model}", stiffness: 300, damping: 20', 0.01),
+        ('time_delay_impedance.TimeDelayImpedance, model: "${scene.model}", dt: 0.001, error_slope: 10,'
+         " impedance: {_target_: dexrepro.control.time_delay_impedance.ConstantImpedance, gain: 20}", 0.01),
+        ("own", 0.01),
+    ],
+)  # fmt: skip
+def test_a_tracking_law_follows_the_leader(law: str, largest: float) -> None:
+    if law == "own":
+        config = configured("scene.law={_target_: test_own_scene.Spring}")
+        metrics = scene.measure(scene.simulate(config, None), config)
+    else:
+        _, metrics = run(law)
+    assert metrics["rmse"] < largest
+    assert metrics["saturated"] == 0
+    assert metrics["force_rmse"] is None
+
+
+class Spring:
+    """A task-space law of the user's: F = k (x_d - x) + d (x_d' - x')."""
+
+    def reset(self) -> None: ...
+
+    def __call__(self, arm: Any, reference: Any, force: Any) -> Any:
+        return 2000 * (reference.position - arm.position) + 80 * (reference.velocity - arm.velocity)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        "force_control.IntegralForceControl, rate: 0.1, desired_force: 2, dt: 0.001",
+        "passive_impedance.PassiveImpedance, mass: 1, damping: 10, desired_force: 2, dt: 0.001",
+        "holding.AutoregressiveHolding, dt: 0.001, desired_force: 2, gain: 0.1, estimator_gain: 10, adaptation: 0.1,"
+        " lags: 2",
+    ],
+)
+def test_a_force_law_holds_the_elastic_object(law: str) -> None:
+    recording, metrics = run(law, *SQUEEZED, "scene.duration=2")
+    assert recording["force_along"][-500:] == pytest.approx(2.0, abs=0.5)
+    assert np.abs(recording["arm.force"][:, 1]).max() < 0.2
+    assert metrics["force_peak"] < 2.5
+
+
+def test_a_redundant_arm_of_the_library_goes_round_a_circle_without_falling() -> None:
+    around = "{circle: {centre: [0.8, -0.3, 0.2], radius: 0.05, period: 2}}"
+    law = ("scene.law={_target_: test_own_scene.Spring}", "scene.gravity_compensation=true", "scene.start=null")
+    config = configured(*law, arm=BAXTER, leader=around)
+    recording = scene.simulate(config, None)
+    assert scene.measure(recording, config)["rmse"] < 0.01
+    assert np.ptp(recording["leader.pose"][:, 1]) > 0.01
+
+
+def test_a_fixed_box_stops_the_arm_and_is_felt() -> None:
+    pen = "{_target_: dexrepro.robots.pen_arm.pen_arm}"
+    down = "{points: [[0, 0.2, 0, 0.05], [0.4, 0.2, 0, -0.02]]}"
+    law = 'computed_torque.ComputedTorque, model: "${scene.model}", frequency: 30'
+    box = "scene.box={size: [0.1, 0.1, 0.02], position: [0.2, 0, 0]}"
+    recording, metrics = run(law, "scene.start=[0,1,-1]", box, arm=pen, leader=down)
+    assert recording["arm.tip"][:, 2].min() > 0.0
+    assert metrics["force_peak"] > 0.05
+
+
+def test_a_recorded_path_is_followed(folder: Path) -> None:
+    rows = [f"{0.1 * k},{50 + k},{10 - k},0" for k in range(10)]
+    (folder / "path.csv").write_text("time,x,y,z\n" + "\n".join(rows))
+    leader = "{csv: {file: path.csv, unit: cm}}"
+    recording, _ = run('computed_torque.ComputedTorque, model: "${scene.model}", frequency: 30', leader=leader)
+    assert recording["leader.pose"][-1] == pytest.approx([0.5499, 0.0501, 0], abs=1e-3)
+
+
+OWN_LINE = "{line: {start: [0.72, 0.1, 0], end: [0.5, 0.1, 0], period: 4}}"
+FIXED = "{_target_: dexrepro.control.holding.FixedDistance, dt: 1, displacement: 1, speed: 1}"
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "sentence"),
+    [
+        ("arm", "{_target_: dexrepro.robots.urdf.from_urdf, path: no.urdf, end: tip}", "no URDF file 'no.urdf'"),
+        ("arm", TINY.replace("end: tip", "end: hand"), "has no link 'hand'; there are: base, upper, fore, tip"),
+        ("arm", "{path: tiny.urdf, end: tip}", "scene.arm is no arm"),
+        ("leader", OWN_LINE, r"the point \(0.72, 0.1, 0\) m that scene.leader reaches at 0 s"),
+        ("leader", "{circle: {radius: 1}, line: {period: 1}}", "names line, circle: give exactly one of points, line"),
+        ("leader", "{points: [[0, 0, 0]]}", "scene.leader.points: give two rows or more of time"),
+        ("leader", "{circle: {radius: 1}}", "scene.leader.circle: no configuration key 'centre'"),
+        ("leader", "{csv: no.csv}", "scene.leader.csv: cannot read 'no.csv'"),
+        ("law", "{_target_: fractions.Fraction}", r"Fraction is called with \(\); it must be \(position, force\)"),
+        ("law", FIXED, "a force law needs the direction it acts along"),
+    ],
+)
+def test_what_cannot_be_used_gets_one_sentence(key: str, value: str, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence) as caught:
+        config = configured(f"scene.law={value}") if key == "law" else configured(**{key: value})
+        scene.simulate(config, None)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_negative_mass_gets_one_sentence(folder: Path) -> None:
+    (folder / "tiny.urdf").write_text(URDF.replace('<mass value="1"/>', '<mass value="-1"/>'))
+    with pytest.raises(InputError, match="link 'upper': mass -1 kg"):
+        scene.simulate(configured(), None)
