@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import ROOT, Shell
 
@@ -24,8 +26,13 @@ def block(language: str, containing: str) -> str:
     return next(text for text in blocks(language) if containing in text)
 
 
+def write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+
+
 def test_examples_are_short() -> None:
-    assert all(len(text.splitlines()) <= 40 for text in blocks("python") + blocks("yaml"))
+    assert all(len(text.splitlines()) <= 40 for text in blocks("python") + blocks("yaml") + blocks("xml"))
 
 
 def test_the_python_example(shell: Shell, tmp_path: Path) -> None:
@@ -36,11 +43,69 @@ def test_the_python_example(shell: Shell, tmp_path: Path) -> None:
 
 def test_the_own_control_law_joins_the_comparison(shell: Shell, tmp_path: Path) -> None:
     (tmp_path / "my_law.py").write_text(block("python", "class IntegralForce"))
-    command = block("sh", "my_law.IntegralForce").strip()
+    command = block("sh", "+holding_comparison.cases.mine").strip()
     done = shell(f"{command} holding_comparison.duration=0.05", timeout=300)
     assert done.returncode == 0, done.stderr
     metrics = next(tmp_path.glob("results/runs/holding_comparison-*/metrics.json")).read_text()
     assert "holding_comparison.mine.rmse" in metrics
+
+
+def test_a_folder_of_the_users_own_joins_the_comparison(shell: Shell, tmp_path: Path) -> None:
+    write(tmp_path / "mine/my_law.py", block("python", "class IntegralForce"))
+    write(tmp_path / "mine/own/compare.yaml", block("yaml", "my_law.IntegralForce"))
+    single, sweep = block("sh", "+own=compare").splitlines()
+    done = shell(f"{single} holding_comparison.duration=0.05", timeout=300)
+    assert done.returncode == 0, done.stderr
+    folder = next(tmp_path.glob("results/runs/holding_comparison-*"))
+    assert "holding_comparison.mine.rmse" in (folder / "metrics.json").read_text()
+    assert "\nmine,mine," in (folder / "tables/T2.1.csv").read_text()
+    assert ">mine</text>" in (folder / "figures/fig_2_08.svg").read_text(), "the legend names the law"
+    done = shell(f"{sweep.replace(' -m', '')} --cfg job".replace("'seed=range(2)'", ""))
+    assert "my_law.IntegralForce" in done.stdout, done.stderr
+
+
+def test_the_own_scene_runs_and_is_compared_and_rendered(shell: Shell, tmp_path: Path) -> None:
+    write(tmp_path / "mine/scene/squeeze.yaml", block("yaml", "name: squeeze"))
+    write(tmp_path / "tiny.urdf", block("xml", "<robot"))
+    for command in block("sh", "+scene=squeeze").splitlines():
+        done = shell(f"{command} scene.duration=1")
+        assert done.returncode == 0, done.stderr
+        assert "book" not in done.stdout
+    first, second = sorted(tmp_path.glob("results/runs/squeeze-*"))
+    assert {"scene.force.force_rmse", "scene.tracking.rmse"} <= set(json.loads((first / "metrics.json").read_text()))
+    assert (first / "figures/fig_own_A.png").exists()
+    assert "scene.force.force_rmse" in shell(f"dexrepro diff {first} {second}").stdout
+    assert shell(f"dexrepro render {first} case=force").returncode == 0
+    assert (first / "animation/force.gif").exists()
+
+
+QUICK = {
+    "letter_accuracy": "letter_accuracy.kernels.draws=2 ~letter_accuracy.cases +letter_accuracy.cases.default={}",
+    "style_transformation": "style_transformation.features.draws=1",
+    "obstacle_crossing": "obstacle_crossing.features.draws=1",
+    "reaching_demonstrations": "reaching_demonstrations.separation_repetitions=10",
+}
+
+
+@pytest.mark.parametrize("command", block("sh", "my_letter.csv").splitlines())
+def test_own_demonstrations_take_the_place_of_the_synthetic(shell: Shell, tmp_path: Path, command: str) -> None:
+    share = np.linspace(0, 1, 100)
+    progress, bump = share**3 * (10 - 15 * share + 6 * share**2), np.sin(np.pi * share)
+    for name, columns in {
+        "my_letter": (2 + np.sin(2 * np.pi * progress), 4 * progress),
+        "over_one": (12 * progress - 6, 0 * share, 5 * bump),
+        "reach1": (2.3 + 17.7 * progress, 9 * progress, bump**2),
+        "reach2": (2.3 + 17.7 * progress, 9 * progress, 2 * bump**2),
+    }.items():
+        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([3 * share, *columns]), delimiter=",")
+    experiment = re.search(r"only=(\w+)", command)[1]
+    done = shell(f"{command} {QUICK[experiment]}", timeout=300)
+    assert done.returncode == 0, done.stderr
+    folder = next(tmp_path.glob(f"results/runs/{experiment}-*"))
+    assert all(
+        value is None or np.isfinite(value) for value in json.loads((folder / "metrics.json").read_text()).values()
+    )
+    assert list((folder / "figures").glob("*.png"))
 
 
 def test_the_own_experiment_runs(shell: Shell, tmp_path: Path) -> None:

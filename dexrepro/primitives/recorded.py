@@ -59,10 +59,13 @@ def resampled(time: ArrayLike, position: ArrayLike, samples: int) -> Array:
 def demonstrations(files: str | Sequence[str], count: int, samples: int, unit: str, axes: int) -> list[Array]:
     """``count`` recorded paths (samples, axes) [m], the files one after another and over again.
 
-    files: a name, a pattern such as ``letters/*.csv``, or a list of them. Raises ValueError as :func:`read_path` does.
+    files: a name, a pattern such as ``letters/*.csv``, or a list of them. Raises ValueError as :func:`read_path` does,
+    and where there are more files than ``count``.
     """
     patterns = [files] if isinstance(files, str) else list(files)
     found = [name for pattern in patterns for name in sorted(glob.glob(pattern)) or [pattern]]
+    if len(found) > count:
+        raise ValueError(f"{len(found)} files are more than the {count} demonstrations of the experiment")
     paths = [resampled(*read_path(name, unit, axes), samples) for name in found]
     return [paths[k % len(paths)] for k in range(count)]
 

@@ -151,8 +151,7 @@ FIXED = "{_target_: dexrepro.control.holding.FixedDistance, dt: 1, displacement:
 )
 def test_what_cannot_be_used_gets_one_sentence(key: str, value: str, sentence: str) -> None:
     with pytest.raises(InputError, match=sentence) as caught:
-        config = configured(f"scene.law={value}") if key == "law" else configured(**{key: value})
-        scene.simulate(config, None)
+        scene.simulate(configured(f"scene.law={value}") if key == "law" else configured(**{key: value}), None)
     assert "\n" not in str(caught.value)
 
 

@@ -38,7 +38,7 @@ METHODS = {"dmp": "DMP", "dmp_plus": "DMP+", "idmp": "IDMP"}
 
 def simulate(config: Config, rng: Any) -> Recording:
     hand, generator, rows, runs = rng("demonstration"), rng("kernels"), [], []
-    written = [letters.demonstration(config.hand.letter, config, hand) for _ in range(config.kernels.draws)]
+    written = letters.demonstrations(config.hand.letter, config.demonstrations, config.kernels.draws, config, hand)
     for count in config.kernels.counts:
         for draw, demonstration in enumerate(written):
             # The target forcing with the printed sign of D v, Eq. (5.5), is that of the same path at negated velocity.
@@ -183,14 +183,16 @@ def _draw_paths(recording: Recording, metrics: Metrics, config: Config) -> Any:
             axes.plot(path.x, path.y, **style.LINES[lines[method]])
             axes.plot(path.x_d, path.y_d, **style.LINES["reference"])
             style.panel(axes, next(letter), f"{name}: {path.mse.iloc[0]:.1e} cm²")
-            axes.set(aspect="equal", xlim=(-0.5, 4.5), ylim=(-0.6, 4.6), xlabel="x [cm]")
+            axes.set(aspect="equal", xlabel="x [cm]")
+            if not config.demonstrations:
+                axes.set(xlim=(-0.5, 4.5), ylim=(-0.6, 4.6))
         row[0].set_ylabel(f"{count} kernels\ny [cm]")
         names = ["dmp", "dmp_plus", f"idmp{most}"]
         values = [draws[(draws.kernels == count) & (draws.method == name)].mse for name in names]
         boxes = row[3].boxplot(values, whis=(0, 100), widths=0.6, patch_artist=True, medianprops={"color": "black"})
         for box, method in zip(boxes["boxes"], METHODS):
             box.set(facecolor=style.LINES[lines[method]]["color"], alpha=0.6, linewidth=0.6)
-        row[3].set(yscale="log", ylabel="MSE [cm²]", ylim=(1e-6, 5))
+        row[3].set(yscale="log", ylabel="MSE [cm²]", ylim=None if config.demonstrations else (1e-6, 5))
         row[3].set_xticks([1, 2, 3], METHODS.values())
         row[3].set_title(f"{config.kernels.draws} draws")
     shares = " and ".join(f"{100 * metrics[f'n{count}.ordered']:.0f} %" for count in counts)  # type: ignore[operator]
@@ -220,6 +222,9 @@ def _draw_features(recording: Recording, metrics: Metrics, config: Config) -> An
         panel.set_title(f"{count} kernels")
         panel.legend(fontsize=6, ncols=2, loc="upper right")
     axes[0, 0].set(ylabel="MSE [cm²]", ylim=(5e-6, 30))
+    if config.demonstrations:
+        axes[0, 0].margins(y=0.35)
+        axes[0, 0].autoscale(axis="y")
     last = config.kernels.counts[-1]
     better = [m for m in added if (metrics[f"n{last}.idmp{m}.beats_dmp_plus"] or 0) > 0.5]
     text = f"With {last} kernels, {min(better)} added features beat the DMP+" if better else "The DMP+ stays ahead"

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from dexrepro.chapters.demonstrations import recorded
 from dexrepro.experiment import Config
-from dexrepro.humans.handwriting import write
+from dexrepro.humans.handwriting import smoothed, write
 from dexrepro.primitives import DMP, Demonstration, ExtendedKernels, GaussianKernels, Scaling, SpringDamper
 
 
@@ -17,6 +18,17 @@ def demonstration(letter: str, config: Config, rng: np.random.Generator) -> Demo
     time = np.linspace(0.0, config.dmp.duration, config.dmp.samples)
     size = hand.size * (1 + config.perturbation)
     return Demonstration.of(time, write(letter, time, size, hand.jitter, hand.tremor, hand.cutoff, rng))
+
+
+def demonstrations(
+    letter: str, files: Any, count: int, config: Config, rng: np.random.Generator
+) -> list[Demonstration]:
+    """``count`` repetitions of a letter [cm]: the user's files, smoothed as any recording, or else synthetic ones."""
+    if not files:
+        return [demonstration(letter, config, rng) for _ in range(count)]
+    time = np.linspace(0.0, config.dmp.duration, config.dmp.samples)
+    paths = recorded(files, count, config.dmp.samples, config.unit, axes=2)
+    return [Demonstration.of(time, (1 + config.perturbation) * smoothed(time, p, config.hand.cutoff)) for p in paths]
 
 
 def letter_scaling(config: Config, dimensions: int = 2) -> Scaling:

@@ -37,7 +37,14 @@ def simulate(config: Config, rng: Any) -> Recording:
     rows, changes, reached, kept = [], [], [], None
     for draw in range(config.features.draws):
         shown = {blocks: crossing.repetitions(blocks, config, hand) for blocks in crossing.HEIGHTS}
-        skills = crossing.learn({b: crossing.averaged(paths, config) for b, paths in shown.items()}, config, generator)
+        averages = {blocks: crossing.averaged(paths, config) for blocks, paths in shown.items()}
+        if (
+            config.demonstrations
+            and config.dmp.amplitude == "printed"
+            and (averages[1].start == averages[1].goal).any()
+        ):
+            return Recording(status="not defined: the printed amplitude is zero where start and goal agree on an axis")
+        skills = crossing.learn(averages, config, generator)
         rows += _quality(draw, skills, config)
         changes += _changes(draw, skills, config)
         reached += _generalisations(draw, skills, config)
@@ -100,6 +107,8 @@ def _frame(path: Any, **columns: Any) -> pd.DataFrame:
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
+    if not recording.frames:
+        return {}
     quality, reached = recording.frames["quality"], recording.frames["goals"]
     clear = quality.groupby(["skill", "blocks"]).clearance.median()
     metrics: Metrics = {f"skill1.over{b}": float(clear[1, b]) for b in crossing.HEIGHTS}

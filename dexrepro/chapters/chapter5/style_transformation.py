@@ -40,7 +40,9 @@ PAIRS = (("w", "z"), ("k", "l"))
 
 def simulate(config: Config, rng: Any) -> Recording:
     hand, generator = rng("demonstration"), rng("features")
-    shown = {name: letters.demonstration(name, config, hand) for name in (config.hand.base, *config.hand.targets)}
+    own = config.demonstrations or {}
+    names = (config.hand.base, *config.hand.targets)
+    shown = {name: letters.demonstrations(name, own.get(name), 1, config, hand)[0] for name in names}
     rows, kept = [], {}  # type: list[Any], dict[tuple[str, int], DMP]
     for draw in range(config.features.draws):
         learned = _learn(shown, config, generator)

@@ -12,6 +12,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from dexrepro.chapters.demonstrations import recorded
+from dexrepro.config import InputError
 from dexrepro.experiment import Config
 from dexrepro.humans.muscle import Muscle, low_pass
 from dexrepro.humans.reaching import Obstacle, Reach, Reacher
@@ -79,8 +81,27 @@ def demonstrate(config: Config) -> tuple[Array, Array]:
     rng, count = generator(config, "demonstrations"), config.demonstration.repetitions
     someone, task = person(config), reach(config)
     ordinary = someone.demonstrate_ordinary(task, count, rng)
+    if config.get("demonstrations"):
+        ordinary = recorded_reaches(config, ordinary.shape)
     reactions = [someone.demonstrate(task, c.obstacle, c.direction, count, rng) for c in conditions(config)]
     return moved(config, ordinary), moved(config, np.array(reactions))
+
+
+def recorded_reaches(config: Config, shape: tuple[int, ...]) -> Array:
+    """The user's ordinary reaches, (repetitions, N, 3) [cm].
+
+    Raises InputError where one does not join the ends of the task, to within 1 cm.
+    """
+    count, samples, axes = shape
+    paths = np.array(recorded(config.demonstrations, count, samples, config.unit, axes))
+    for name, end, point in zip(("start", "goal"), reach(config).ends, (paths[:, 0], paths[:, -1])):
+        far = point[np.linalg.norm(point - end, axis=1).argmax()]
+        if np.linalg.norm(far - end) > 1.0:
+            raise InputError(
+                f"demonstrations: {name} at ({', '.join(f'{value:.3g}' for value in far)}) cm instead of "
+                f"({', '.join(f'{value:.3g}' for value in end)}) cm; set shared.scene.{name} to (x, y) of yours"
+            )
+    return paths
 
 
 def measure_stiffness(config: Config) -> tuple[Array, Array]:
