@@ -155,6 +155,9 @@ def _plan(
     if not isinstance(seed, int):
         raise InputError(f"seed = {seed!r} is not allowed: it must be a whole number of 0 or greater")
     block = resolved_block(config, name)
+    for key in block:
+        if key not in shipped[name]:
+            raise InputError(f"unknown key '{name}.{key}': {nearest(key, shipped[name])}")
     differs = differences(block, resolved_block(shipped, name))
     differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
     differs = differs or differences(cases, book)  # a shared value that only a case refers to

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -12,6 +13,8 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT, Shell
+
+from dexrepro import cli
 
 ONLY_K = [
     f"~movement_estimation.cases.{case}"
@@ -129,11 +132,20 @@ def test_a_folder_of_the_user_takes_part_in_a_sweep(shell: Shell, tmp_path: Path
     assert all("movement_estimation.mine." in path.read_text() for path in runs)
 
 
+def test_a_folder_of_the_user_is_importable_in_spawned_processes(mine: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    assert cli._config_dir_option(["--config-dir", str(mine), "a=1"]) == (str(mine), ["a=1"])
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        assert pool.apply(eval, ("__import__('my_law').Further.__name__",)) == "Further"
+
+
 def test_a_folder_of_the_user_that_cannot_be_used_gets_one_sentence(shell: Shell, mine: Path) -> None:
     (mine / "own/compare.yaml").write_text(OWN_CASE.partition("\n")[2])
+    (mine / "own/misspelt.yaml").write_text(OWN_CASE + "  duratio: 1\n")
     for command, sentence in {
         "--config-dir nowhere +own=compare": "--config-dir = nowhere is not allowed: there is no such folder",
         "--config-dir mine +own=compar": "Could not find 'own/compar'",
+        "--config-dir mine +own=misspelt": "unknown key 'movement_estimation.duratio': did you mean 'duration'?",
         "--config-dir mine chapter=2 +own=compare": "begin it with '# @package _global_'",
     }.items():
         done = shell(f"dexrepro run {command}")

@@ -68,7 +68,7 @@ def test_the_own_scene_runs_and_is_compared_and_rendered(shell: Shell, tmp_path:
     write(tmp_path / "mine/scene/squeeze.yaml", block("yaml", "name: squeeze"))
     write(tmp_path / "tiny.urdf", block("xml", "<robot"))
     for command in block("sh", "+scene=squeeze").splitlines():
-        done = shell(f"{command} scene.duration=1")
+        done = shell(f"{command} scene.duration=0.3")
         assert done.returncode == 0, done.stderr
         assert "book" not in done.stdout
     first, second = sorted(tmp_path.glob("results/runs/squeeze-*"))
@@ -80,10 +80,10 @@ def test_the_own_scene_runs_and_is_compared_and_rendered(shell: Shell, tmp_path:
 
 
 QUICK = {
-    "letter_accuracy": "letter_accuracy.kernels.draws=2 ~letter_accuracy.cases +letter_accuracy.cases.default={}",
-    "style_transformation": "style_transformation.features.draws=1",
-    "obstacle_crossing": "obstacle_crossing.features.draws=1",
-    "reaching_demonstrations": "reaching_demonstrations.separation_repetitions=10",
+    "letter_accuracy": "kernels.draws=2 ~{0}.cases '+{0}.cases={{default: {{equal_size: true}}}}'",
+    "style_transformation": "features.draws=1 ~{0}.cases +{0}.cases.default={{}}",
+    "obstacle_crossing": "features.draws=1 ~{0}.cases +{0}.cases.default={{}}",
+    "reaching_demonstrations": "separation_repetitions=10 ~{0}.cases.printed_sign",
 }
 
 
@@ -99,7 +99,7 @@ def test_own_demonstrations_take_the_place_of_the_synthetic(shell: Shell, tmp_pa
     }.items():
         np.savetxt(tmp_path / f"{name}.csv", np.column_stack([3 * share, *columns]), delimiter=",")
     experiment = re.search(r"only=(\w+)", command)[1]
-    done = shell(f"{command} {QUICK[experiment]}", timeout=300)
+    done = shell(f"{command} {experiment}.{QUICK[experiment].format(experiment)}", timeout=300)
     assert done.returncode == 0, done.stderr
     folder = next(tmp_path.glob(f"results/runs/{experiment}-*"))
     assert all(

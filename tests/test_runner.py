@@ -10,7 +10,7 @@ import pytest
 
 import dexrepro
 from dexrepro.config import InputError
-from dexrepro.runner import generator, plan_chapter, run_plans
+from dexrepro.runner import generator, own_digest, plan_chapter, run_plans
 from dexrepro.storage import Result
 
 
@@ -45,6 +45,26 @@ def test_what_is_there_is_not_run_again_unless_forced(toy: Path) -> None:
     assert (toy / "results/chapter90/decay/run.json").stat().st_mtime_ns == stamp
     run(force=True)
     assert (toy / "results/chapter90/decay/run.json").stat().st_mtime_ns > stamp
+
+
+def test_a_changed_file_of_the_user_changes_the_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    for name in ("path1.csv", "users_law.py", "users_helper.py"):
+        Path(name).write_text("1")
+    config = {
+        "demonstrations": ["path?.csv"],
+        "law": {"_target_": "users_law.Law"},
+        "kind": "dmp",
+        "other": "no.such.Law",
+    }
+    keys = [own_digest(config)]
+    for name in ("path1.csv", "path2.csv", "users_law.py", "users_helper.py"):
+        Path(name).write_text("2")
+        keys.append(own_digest(config))
+    assert len(set(keys)) == 5
+    Path("unrelated.csv").write_text("3")
+    assert own_digest(config) == keys[-1]
 
 
 def test_an_override_leaves_the_results_of_the_book_alone(toy: Path) -> None:

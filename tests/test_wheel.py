@@ -26,3 +26,13 @@ def test_the_wheel_works_without_the_checkout(tmp_path: Path) -> None:
     done = subprocess.run(run, cwd=empty, env=env, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stderr
     assert "movement_estimation:" in done.stdout
+    (empty / "mine/own").mkdir(parents=True)
+    (empty / "mine/my_law.py").write_text("from dexrepro.control.holding_reference import ImpedanceReference as Mine\n")
+    (empty / "mine/own/compare.yaml").write_text(
+        "# @package _global_\nonly: movement_estimation\nmovement_estimation:\n  duration: 0.05\n  cases:\n"
+        "    mine: {law._target_: my_law.Mine, stiffness: 35, period: 20}\n"
+    )
+    run = [sys.executable, "-m", "dexrepro", "run", "--config-dir", "mine", "+own=compare"]
+    done = subprocess.run(run, cwd=empty, env=env, capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert "movement_estimation.mine." in next(empty.glob("results/runs/*/metrics.json")).read_text()

@@ -146,12 +146,15 @@ FIXED = "{_target_: dexrepro.control.holding.FixedDistance, dt: 1, displacement:
         ("leader", "{circle: {radius: 1}}", "scene.leader.circle: no configuration key 'centre'"),
         ("leader", "{csv: no.csv}", "scene.leader.csv: cannot read 'no.csv'"),
         ("law", "{_target_: fractions.Fraction}", r"Fraction is called with \(\); it must be \(position, force\)"),
+        ("start", "[0.1]", r"scene.start = \[0.1\] is not allowed: it must be 2 joint angles"),
         ("law", FIXED, "a force law needs the direction it acts along"),
     ],
 )
 def test_what_cannot_be_used_gets_one_sentence(key: str, value: str, sentence: str) -> None:
     with pytest.raises(InputError, match=sentence) as caught:
-        scene.simulate(configured(f"scene.law={value}") if key == "law" else configured(**{key: value}), None)
+        scene.simulate(
+            configured(**{key: value}) if key in ("arm", "leader") else configured(f"scene.{key}={value}"), None
+        )
     assert "\n" not in str(caught.value)
 
 

@@ -59,6 +59,8 @@ def start(config: Config, path: Path) -> Array:
     """
     arm, found, first = config.arm, config.start, None
     offset = np.array(config.offset, dtype=float)
+    if found is not None and len(found) != arm.dof:
+        raise InputError(f"scene.start = {found} is not allowed: it must be {arm.dof} joint angles, or null")
     for time in np.linspace(0.0, config.duration, CHECKED):
         place = path(time).position + offset
         try:
