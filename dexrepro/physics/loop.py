@@ -168,7 +168,7 @@ class _Scene:
         for arm in self._arms:
             arm.read()
             # A sum is cheap and is not a number if any of its terms is not.
-            if not sum(map(abs, arm.dq)) + sum(map(abs, arm.q)) < GUARD:
+            if not sum(map(abs, arm.q + arm.dq)) < GUARD:
                 return _diverged(arm, now)
         for body in self._bodies:
             body.read()
@@ -211,7 +211,7 @@ class _Scene:
             row += arm.torque
             row += (arm.x, arm.y, arm.z, arm.fx, arm.fy, arm.fz)
             if arm.force_channel is not None:
-                row += arm.sense.force.tolist()
+                row += arm.sense.felt
         for body in self._bodies:
             row += (body.x, body.y, body.z, *body.orientation)
         for element in self._elements:
@@ -233,10 +233,13 @@ class _Scene:
 
 
 def _diverged(arm: SimulatedArm, now: float) -> str:
-    if max(map(abs, arm.q)) > max(map(abs, arm.dq)):
-        values, what, unit = arm.q, "angle", "rad"
+    """Names the quantity that makes up most of the sum, and its joint; what is not a number exceeds everything."""
+    sizes = [[abs(value) if abs(value) < np.inf else np.inf for value in values] for values in (arm.q, arm.dq)]
+    angles, rates = sizes
+    if sum(angles) > sum(rates):
+        values, size, what, unit = arm.q, angles, "angle", "rad"
     else:
-        values, what, unit = arm.dq, "velocity", "rad/s"
-    worst = max(range(arm.dof), key=lambda i: abs(values[i]) if abs(values[i]) < np.inf else np.inf)
+        values, size, what, unit = arm.dq, rates, "velocity", "rad/s"
+    worst = size.index(max(size))
     joint = arm.arm.joints[worst].name
     return f"diverged at {now:.4g} s: {what} of joint '{joint}' of arm '{arm.name}' is {values[worst]:.4g} {unit}"

@@ -6,7 +6,7 @@ world frame, and ``push(fx, fy, fz)`` [N]. Plain floats: at 1 kHz small arrays c
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -63,17 +63,30 @@ class Sense:
     """What one arm may know at an instant; nothing of its partner.
 
     time [s]; position, velocity: joint angles and rates as measured, shape (n,) [rad, rad/s]; force: the force on its
-    end point as its sensor reports it, shape (3,), world frame [N]. The arrays are new at every instant.
+    end point as its sensor reports it, shape (3,), world frame [N]. The arrays are new at every access; ``angles``,
+    ``rates`` and ``felt`` are the same as plain floats, for laws quicker without arrays.
     """
 
-    __slots__ = ("_plant", "force", "position", "time", "velocity")
+    __slots__ = ("_plant", "angles", "felt", "rates", "time")
 
     def __init__(self, plant: SimulatedArm) -> None:
         self._plant = plant
         self.time = 0.0
-        self.position = np.zeros(plant.dof)
-        self.velocity = np.zeros(plant.dof)
-        self.force = np.zeros(3)
+        self.angles: Sequence[float] = (0.0,) * plant.dof
+        self.rates: Sequence[float] = (0.0,) * plant.dof
+        self.felt: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        return np.array(self.angles)
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        return np.array(self.rates)
+
+    @property
+    def force(self) -> NDArray[np.float64]:
+        return np.array(self.felt)
 
     @property
     def tip(self) -> NDArray[np.float64]:
@@ -123,8 +136,8 @@ class SimulatedArm(Point):
         self._levers: list[tuple[float, float]] = []
         self.z = self._planar.height if self._planar else 0.0
         self.load = self._zeros
-        self.q: list[float] = []
-        self.dq: list[float] = []
+        self.q: tuple[float, ...] = ()
+        self.dq: tuple[float, ...] = ()
         self.torque: Any = self._zeros
         self.fx = self.fy = self.fz = 0.0
         self._located = False
@@ -148,8 +161,7 @@ class SimulatedArm(Point):
     def read(self) -> None:
         """Take the joint state from the engine and forget last step's forces."""
         states = bullet.getJointStates(self.body, self._indices, physicsClientId=self.client)
-        self.q = [state[0] for state in states]
-        self.dq = [state[1] for state in states]
+        self.q, self.dq, _, _ = zip(*states)
         self._located = False
         self.fx = self.fy = self.fz = 0.0
         self.load = self._zeros
@@ -203,14 +215,14 @@ class SimulatedArm(Point):
         sense = self.sense
         sense.time = time
         if self.joint_channel is None:
-            sense.position = np.array(self.q)
-            sense.velocity = np.array(self.dq)
+            sense.angles, sense.rates = self.q, self.dq
         elif sample:
-            sense.position, sense.velocity = self.joint_channel(np.array(self.q), np.array(self.dq))
+            position, velocity = self.joint_channel(np.array(self.q), np.array(self.dq))
+            sense.angles, sense.rates = position.tolist(), velocity.tolist()
         if self.force_channel is None:
-            sense.force = np.array((self.fx, self.fy, self.fz))
+            sense.felt = self.fx, self.fy, self.fz
         elif sample:
-            sense.force = self.force_channel(np.array((self.fx, self.fy, self.fz)))
+            sense.felt = self.force_channel((self.fx, self.fy, self.fz))
         return sense
 
     def command(self, torque: Any, damping: Any, step: float) -> None:
@@ -255,7 +267,8 @@ class SimulatedArm(Point):
         return torque - multiply(damping, rate + step * np.linalg.solve(mass, rest))
 
     def _act(self, fx: float, fy: float, fz: float) -> None:
-        self.locate()
+        if not self._located:
+            self.locate()
         if self._planar is not None:
             self.load = [load + x * fy - y * fx for load, (x, y) in zip(self.load, self._levers)]
         else:

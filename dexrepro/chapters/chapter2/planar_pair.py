@@ -83,10 +83,10 @@ class TipServo:
 
     def __call__(self, sense: Any, target: tuple[float, float]) -> list[float]:
         """Torque [N m] towards a tip position (x, y) [m], the measured contact force compensated."""
-        q, dq = sense.position.tolist(), sense.velocity.tolist()
+        q, (fx, fy, _) = sense.angles, sense.felt
         self._joints = self.chain.approach(self._joints or q, target, self._damping)
-        contact = self.chain.tip_torque(q, sense.force.tolist())
-        return [law(r, a, v) - t for law, r, a, v, t in zip(self._laws, self._joints, q, dq, contact)]
+        contact = self.chain.tip_torque(q, (fx, fy))
+        return [law(r, a, v) - t for law, r, a, v, t in zip(self._laws, self._joints, q, sense.rates, contact)]
 
 
 class ImpedanceServo:
@@ -97,8 +97,8 @@ class ImpedanceServo:
         self._law = TargetImpedance(model=self.chain, desired_force=config.desired_force, **config.impedance)
 
     def __call__(self, sense: Any, target: tuple[float, float]) -> list[float]:
-        fx, fy, _ = sense.force.tolist()
-        return self._law(sense.position.tolist(), sense.velocity.tolist(), (fx, fy), target)
+        fx, fy, _ = sense.felt
+        return self._law(sense.angles, sense.rates, (fx, fy), target)
 
 
 class Leader:
@@ -129,11 +129,11 @@ class Follower:
         self.reference = (0.0, 0.0)
 
     def __call__(self, sense: Any) -> list[float]:
-        x, y = self._servo.chain.forward(sense.position.tolist())
+        x, y = self._servo.chain.forward(sense.angles)
         if self._home is None:
             self._home = x, y
             self._law.reset(x)
-        fx, fy, _ = sense.force.tolist()
+        fx, fy, _ = sense.felt
         along, across = self._law(x, fx), self._home[1] + self._regulation(fy)
         self.reference = along, across
         return self._servo(sense, (min(max(along, self._low), self._high), across))
