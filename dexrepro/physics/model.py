@@ -81,6 +81,15 @@ class RigidBodyModel:
         )
         return np.array(linear + angular)
 
+    def tip_torque(self, q: Array, force: Sequence[float]) -> Array:
+        """Joint torques J^T F (n,) [N m] of a force (x, y, z) [N] on the end point."""
+        linear, _ = bullet.calculateJacobian(
+            self._body, self._end.link, self._end.for_jacobian, _list(q), self._zeros, self._zeros,
+            physicsClientId=self._client,
+        )  # fmt: skip
+        fx, fy, fz = force
+        return np.array([fx * x + fy * y + fz * z for x, y, z in zip(*linear)])
+
     def forward(self, q: Array) -> tuple[Array, Array]:
         """Position (3,) [m] and rotation (3, 3) of the end point in the world frame."""
         angles = [[angle] for angle in _list(q)]

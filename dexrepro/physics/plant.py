@@ -127,7 +127,7 @@ class SimulatedArm(Point):
         self.feels_contact = False
         self._indices = list(range(arm.dof))
         self._zeros = [0.0] * arm.dof
-        self.limits = arm.effort if saturate and np.isfinite(arm.effort).any() else None
+        self.limits: list[float] | None = arm.effort.tolist() if saturate and np.isfinite(arm.effort).any() else None
         self._sensor, self._rng = sensor, rng
         self.force_channel: ForceChannel | None = None
         self.joint_channel: JointChannel | None = None
@@ -229,9 +229,10 @@ class SimulatedArm(Point):
         """Set this step's joint torque [N m], with damping [N m s/rad] applied implicitly, within the effort limits."""
         if damping is not None:
             torque = self._damped(np.asarray(torque, dtype=float), damping, step)
+        torque = torque.tolist() if isinstance(torque, np.ndarray) else torque
         if self.limits is not None:
-            torque = np.minimum(np.maximum(torque, -self.limits), self.limits)
-        self.torque = torque.tolist() if isinstance(torque, np.ndarray) else torque
+            torque = [-top if value < -top else top if value > top else value for value, top in zip(torque, self.limits)]
+        self.torque = torque
 
     def apply(self) -> None:
         """Hand torque and other joint loads to the engine for the coming step."""
