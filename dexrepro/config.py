@@ -15,6 +15,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -126,13 +127,21 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
 
     Raises InputError with one sentence where an override names no key, cannot be parsed or is out of range.
     """
-    shipped = _compose([f"chapter='{chapter}'"])
+    shipped = _shipped(chapter, config_dir())
     check_overrides(overrides, shipped)
+    if not overrides and extra_dir is None:
+        return copy.deepcopy(shipped)
     search = [f"hydra.searchpath=[file://{Path(extra_dir).resolve()}]"] if extra_dir else []
     try:
         return _compose([f"chapter='{chapter}'", *overrides, *search])
     except (HydraException, OmegaConfBaseException) as error:
         raise InputError(" ".join(str(error).split())) from error
+
+
+@cache
+def _shipped(chapter: str, directory: Path) -> dict[str, Any]:
+    """The configuration without overrides, not to be changed; a folder of configurations is read once."""
+    return _compose([f"chapter='{chapter}'"])
 
 
 def _compose(overrides: list[str]) -> dict[str, Any]:
@@ -164,13 +173,18 @@ def _keys(node: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
             yield from _keys(value, f"{prefix}{key}.")
 
 
-def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, dict[str, Any]]:
-    """Resolved configuration of every case of an experiment, checked: ``{case: plain dictionary}``."""
+def experiment_cases(
+    composed: Mapping[str, Any], experiment: str, names: DictConfig | None = None
+) -> dict[str, dict[str, Any]]:
+    """Resolved configuration of every case of an experiment, checked: ``{case: plain dictionary}``.
+
+    names: what ``references(composed)`` returned, where it is at hand; it serves one experiment.
+    """
     block = composed.get(experiment)
     if not isinstance(block, Mapping):
         raise InputError(f"experiment '{experiment}' has no block in its chapter's configuration")
     base = {key: value for key, value in block.items() if key != "cases"}
-    names = _names(composed)
+    names = references(composed) if names is None else names
     result: dict[str, dict[str, Any]] = {}
     for name, overrides in _expanded(block.get("cases") or {"default": {}}, names, experiment, base):
         merged = copy.deepcopy(base)
@@ -181,10 +195,10 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
     return result
 
 
-def resolved_block(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
-    """The experiment's own block, resolved, without its cases."""
+def resolved_block(composed: Mapping[str, Any], experiment: str, names: DictConfig | None = None) -> dict[str, Any]:
+    """The experiment's own block, resolved, without its cases; names as for ``experiment_cases``."""
     block = {key: value for key, value in composed[experiment].items() if key != "cases"}
-    return _resolve(_names(composed), experiment, block)
+    return _resolve(references(composed) if names is None else names, experiment, block)
 
 
 def _expanded(
@@ -223,8 +237,8 @@ def _assign(node: dict[str, Any], dotted: str, value: Any, where: str) -> None:
         node[last] = value
 
 
-def _names(composed: Mapping[str, Any]) -> DictConfig:
-    """What interpolations may refer to, made once for all cases: most of the work is in making it."""
+def references(composed: Mapping[str, Any]) -> DictConfig:
+    """What interpolations may refer to, made once for all cases of an experiment: much of the work is in making it."""
     blocks = {key: value for key, value in composed.items() if key != "hydra"}
     for key, value in blocks.items():
         if isinstance(value, Mapping):

@@ -31,12 +31,14 @@ import yaml
 
 from dexrepro import __version__, chapters
 from dexrepro.config import (
+    SETTINGS,
     InputError,
     check_types,
     compose_chapter,
     differences,
     experiment_cases,
     nearest,
+    references,
     resolved_block,
 )
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
@@ -146,14 +148,16 @@ def _plan(
     results: Path,
     perturbation: float,
 ) -> Plan:
-    cases, book = experiment_cases(config, name), experiment_cases(shipped, name)
+    changed = any(config.get(key) != value for key, value in shipped.items() if key not in SETTINGS)
+    names = references(config)
+    cases, block = experiment_cases(config, name, names), resolved_block(config, name, names)
+    book, book_block = (experiment_cases(shipped, name), resolved_block(shipped, name)) if changed else (cases, block)
     for case, values in cases.items():
         check_types(values, book.get(case, next(iter(book.values()))), name)
     seed = config["seed"]
     if not isinstance(seed, int):
         raise InputError(f"seed = {seed!r} is not allowed: it must be a whole number of 0 or greater")
-    block = resolved_block(config, name)
-    differs = differences(block, resolved_block(shipped, name))
+    differs = differences(block, book_block)
     differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
     differs = differs or differences(cases, book)  # a shared value that only a case refers to
     differs += differences({"seed": seed}, {"seed": shipped["seed"]})
