@@ -193,11 +193,7 @@ class SimulatedArm(Point):
         self.fx += fx
         self.fy += fy
         self.fz += fz
-        self._act(fx, fy, fz)
-
-    def push_unsensed(self, fx: float, fy: float, fz: float) -> None:
-        """Add a force on the end point [N] that the force sensor does not see."""
-        self._act(fx, fy, fz)
+        self.push_unsensed(fx, fy, fz)
 
     def push_link(self, link: str, point: tuple[float, float, float], force: tuple[float, float, float]) -> None:
         """Add a force [N], world frame, at a point of a link frame [m]."""
@@ -267,7 +263,8 @@ class SimulatedArm(Point):
             mass += step * damping
         return torque - multiply(damping, rate + step * np.linalg.solve(mass, rest))
 
-    def _act(self, fx: float, fy: float, fz: float) -> None:
+    def push_unsensed(self, fx: float, fy: float, fz: float) -> None:
+        """Add a force on the end point [N] that the force sensor does not see."""
         if not self._located:
             self.locate()
         if self._planar is not None:
