@@ -425,6 +425,8 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     if not waiting:
         return outcome
     by_name = {plan.experiment: plan for plan in plans}
+    # An experiment of few cases has long ones: they begin, and the short ones of the others fill the gaps at the end.
+    todo.sort(key=lambda job: len(by_name[job.experiment].jobs))
     with _pool(workers or available_cores(), progress, in_process=any(job.gui for job in todo)) as submit:
         pending: dict[Future[Any], Job | Plan] = {submit(execute, job): job for job in todo}
         pending |= {submit(assemble, by_name[name]): by_name[name] for name, cases in waiting.items() if not cases}

@@ -10,7 +10,7 @@ import pybullet as bullet
 from numpy.typing import NDArray
 
 from dexrepro.physics.loading import connect, load_arm
-from dexrepro.physics.plant import EndPoint
+from dexrepro.physics.plant import EndPoint, rotated
 from dexrepro.robots.arm import Arm
 
 Array = NDArray[np.float64]
@@ -96,7 +96,8 @@ class RigidBodyModel:
         bullet.resetJointStatesMultiDof(self._body, self._indices, angles, physicsClientId=self._client)
         state = bullet.getLinkState(self._body, self._end.link, 0, 1, physicsClientId=self._client)
         rotation = np.array(bullet.getMatrixFromQuaternion(state[1])).reshape(3, 3)
-        return np.array(state[0]) + rotation @ self._end.from_com, rotation @ self._end.rotation
+        (x, y, z), (a, b, c) = state[0], rotated(state[1], self._end.from_com)
+        return np.array((x + a, y + b, z + c)), rotation @ self._end.rotation
 
 
 def _list(values: Array) -> list[float]:

@@ -7,6 +7,7 @@ world frame, and ``push(fx, fy, fz)`` [N]. Plain floats: at 1 kHz small arrays c
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from operator import add
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -183,7 +184,7 @@ class SimulatedArm(Point):
             self.vx, self.vy = vx, vy
             return
         state = bullet.getLinkState(self.body, self.end.link, 1, 1, physicsClientId=self.client)
-        (cx, cy, cz), (rx, ry, rz) = state[0], _rotated(state[1], self.end.from_com)
+        (cx, cy, cz), (rx, ry, rz) = state[0], rotated(state[1], self.end.from_com)
         (ux, uy, uz), (ox, oy, oz) = state[6], state[7]
         self.x, self.y, self.z = cx + rx, cy + ry, cz + rz
         self.vx, self.vy, self.vz = ux + oy * rz - oz * ry, uy + oz * rx - ox * rz, uz + ox * ry - oy * rx
@@ -199,7 +200,7 @@ class SimulatedArm(Point):
         """Add a force [N], world frame, at a point of a link frame [m]."""
         index = self.links.index(link)
         state = bullet.getLinkState(self.body, index, 0, 1, physicsClientId=self.client)
-        place = [a + b for a, b in zip(state[4], _rotated(state[5], point), strict=True)]
+        place = [a + b for a, b in zip(state[4], rotated(state[5], point), strict=True)]
         bullet.applyExternalForce(self.body, index, force, place, bullet.WORLD_FRAME, physicsClientId=self.client)
 
     def add_load(self, torque: Any) -> None:
@@ -234,7 +235,7 @@ class SimulatedArm(Point):
         """Hand torque and other joint loads to the engine for the coming step."""
         total = self.torque
         if self.load is not self._zeros:
-            total = [a + b for a, b in zip(total, self.load, strict=True)]
+            total = list(map(add, total, self.load))
         bullet.setJointMotorControlArray(
             self.body, self._indices, bullet.TORQUE_CONTROL, forces=total, physicsClientId=self.client
         )
@@ -334,7 +335,7 @@ class EndPoint:
         self.for_jacobian: tuple[float, ...] = tuple((axes.T @ local[:3, 3]).tolist())
 
 
-def _rotated(quaternion: tuple[float, ...], vector: tuple[float, ...]) -> tuple[float, float, float]:
+def rotated(quaternion: tuple[float, ...], vector: tuple[float, ...]) -> tuple[float, float, float]:
     """A vector turned by a quaternion (x, y, z, w): v + 2 u x (u x v + w v)."""
     i, j, k, w = quaternion
     a, b, c = vector

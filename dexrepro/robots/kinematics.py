@@ -59,7 +59,7 @@ def point_jacobian(arm: Arm, position: ArrayLike, link: int, point: ArrayLike) -
 
 def rotation_error(desired: ArrayLike, actual: ArrayLike) -> Array:
     """Rotation vector (..., 3) [rad], world frame, that turns the actual orientation (..., 3, 3) into the desired."""
-    difference = np.asarray(desired, dtype=float) @ np.swapaxes(np.asarray(actual, dtype=float), -1, -2)
+    difference = np.asarray(desired, dtype=float) @ np.asarray(actual, dtype=float).swapaxes(-1, -2)
     if difference.ndim == 2:
         (a, b, c), (d, e, f), (g, h, i) = difference.tolist()
         x, y, z = (h - f) / 2, (c - g) / 2, (d - b) / 2
