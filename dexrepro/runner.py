@@ -130,6 +130,8 @@ def plan_chapter(
         raise InputError(f"unknown chapter '{chapter}'; chapters: {', '.join(chapters.numbers())}")
     config = composed if composed is not None else compose_chapter(chapter, overrides, extra_dir)
     shipped = compose_chapter(chapter)
+    if config["gui"]:
+        _require_display()
     results = writable(Path(config["results"]))
     plans, skipped = [], {}
     for experiment in select(chapter, config["only"], config["figure"]):
@@ -139,6 +141,15 @@ def plan_chapter(
             continue
         plans.append(_plan(chapter, experiment.name, config, shipped, results, perturbation))
     return plans, skipped
+
+
+def _require_display() -> None:
+    from dexrepro.physics.loading import can_open_window
+
+    if not can_open_window():
+        shown = os.environ.get("DISPLAY")
+        why = f"DISPLAY = {shown} cannot be opened" if shown else "DISPLAY is not set"
+        raise InputError(f"gui = true is not allowed: it needs a display, and there is none ({why})")
 
 
 def _plan(

@@ -81,9 +81,8 @@ class MovementEstimation:
             error = error / (1.0 + dt * load)
         stiffness_rate = rates[0] * position * error
         power, step = 1.0, dt / self.stiffness
-        kept, correction = 1.0 - step * stiffness_rate, step * error
         for j, rate in enumerate(rates[1:]):
-            a[j] = kept * a[j] - power * rate * correction
+            a[j] = a[j] - step * (rate * power * error + stiffness_rate * a[j])
             power *= time
         self.stiffness = self._maximum(self.floor, self.stiffness + dt * stiffness_rate)
         self._sample += 1
