@@ -149,5 +149,5 @@ def test_the_configuration_on_disk_is_resolved(toy: Path) -> None:
 def test_a_window_without_a_display_is_refused_before_anything_runs(toy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DISPLAY", ":7777")
     with pytest.raises(InputError, match=r"gui = true .* needs a display, and there is none \(DISPLAY = :7777"):
-        run("Z", ["gui=true", f"results={toy}"])
+        run("gui=true")
     assert not list(toy.rglob("*.json"))

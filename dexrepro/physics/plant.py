@@ -228,7 +228,7 @@ class SimulatedArm(Point):
             torque = self._damped(np.asarray(torque, dtype=float), damping, step)
         torque = torque.tolist() if isinstance(torque, np.ndarray) else torque
         if self.limits is not None:
-            torque = [-top if value < -top else top if value > top else value for value, top in zip(torque, self.limits)]
+            torque = [-top if t < -top else top if t > top else t for t, top in zip(torque, self.limits)]
         self.torque = torque
 
     def apply(self) -> None:

@@ -64,7 +64,8 @@ def run(config: Config, rng: Any, path: Callable[[float], Array]) -> Recording:
         follower = Follower(config, world.arm("follower").arm)
         leader = Leader(config, world.arm("leader").arm, path, lambda now: follower.since_contact(now))
 
-        balloon, guard, duration = world.elements[0], config.guard, config.duration
+        balloon: Any = world.elements[0]
+        guard, duration = config.guard, config.duration
 
         def stop(now: float) -> str | None:
             if balloon.force > guard:

@@ -50,7 +50,7 @@ def run(world: World, config: Config, law: Any, record_every: int = 5) -> Record
     estimation = getattr(law, "estimation", None)
     if estimation is not None:
         probes["estimate"] = lambda: (estimation.position, estimation.stiffness, estimation.velocity)
-    (contact,) = world.elements
+    contact: Any = world.elements[0]
     limit = config.stiffness * config.rest_length
 
     def squeezed(time: float) -> str | None:
