@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import gc
 import glob
 import hashlib
 import importlib.util
@@ -32,6 +33,7 @@ import yaml
 
 from dexrepro import __version__, chapters
 from dexrepro.config import (
+    SETTINGS,
     InputError,
     check_types,
     compose_chapter,
@@ -129,6 +131,8 @@ def plan_chapter(
         raise InputError(f"unknown chapter '{chapter}'; chapters: {', '.join(chapters.numbers())}")
     config = composed if composed is not None else compose_chapter(chapter, overrides, extra_dir)
     shipped = compose_chapter(chapter)
+    if config["gui"]:
+        _require_display()
     results = writable(Path(config["results"]))
     plans, skipped = [], {}
     for experiment in select(chapter, config["only"], config["figure"]):
@@ -140,6 +144,15 @@ def plan_chapter(
     return plans, skipped
 
 
+def _require_display() -> None:
+    from dexrepro.physics.loading import can_open_window
+
+    if not can_open_window():
+        shown = os.environ.get("DISPLAY")
+        why = f"DISPLAY = {shown} cannot be opened" if shown else "DISPLAY is not set"
+        raise InputError(f"gui = true is not allowed: it needs a display, and there is none ({why})")
+
+
 def _plan(
     chapter: str,
     name: str,
@@ -148,32 +161,42 @@ def _plan(
     results: Path,
     perturbation: float,
 ) -> Plan:
-    cases, book = experiment_cases(config, name), experiment_cases(shipped, name)
-    for case, values in cases.items():
-        check_types(values, book.get(case, next(iter(book.values()))), name)
     seed = config["seed"]
     if not isinstance(seed, int):
         raise InputError(f"seed = {seed!r} is not allowed: it must be a whole number of 0 or greater")
-    block = resolved_block(config, name)
+    cases, block = experiment_cases(config, name), resolved_block(config, name)
     for key in block:
         if key not in shipped[name]:
             raise InputError(f"unknown key '{name}.{key}': {nearest(key, shipped[name])}")
-    differs = differences(block, resolved_block(shipped, name))
-    differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
-    differs = differs or differences(cases, book)  # a shared value that only a case refers to
-    differs += differences({"seed": seed}, {"seed": shipped["seed"]})
+    differs = [] if _as_shipped(config, shipped) else _differs(name, config, shipped, cases, block)
     folder = results / f"chapter{chapter}" / name
     if differs:
         label = block["name"] if chapter == chapters.OWN else name
         folder = results / "runs" / f"{label}-{_digest([cases, seed])[:10]}"
-    jobs = []
+    jobs, code = [], [source_digest(chapter), [version(package) for package in NUMERICAL]]
     for case, values in cases.items():
         values = {**values, "perturbation": perturbation, "seed": seed, "case": case}
-        sources = [source_digest(chapter), own_digest(values), [version(package) for package in NUMERICAL]]
-        key = _digest([name, values, *sources])
+        key = _digest([name, values, own_digest(values), *code])
         cached = results / ".cache" / name / f"{case}-{key[:16]}"
         jobs.append(Job(chapter, name, case, values, seed, str(cached), bool(config["gui"])))
     return Plan(chapter, name, block, jobs, folder, seed, differs)
+
+
+def _as_shipped(config: Mapping[str, Any], shipped: Mapping[str, Any]) -> bool:
+    return all(config.get(key) == shipped.get(key) for key in {*config, *shipped} - {*SETTINGS, "hydra"} | {"seed"})
+
+
+def _differs(
+    name: str, config: Mapping[str, Any], shipped: Mapping[str, Any], cases: Mapping[str, Any], block: Mapping[str, Any]
+) -> list[str]:
+    """In what an experiment differs from the book. Raises InputError where a text stands for a number."""
+    book = experiment_cases(shipped, name)
+    for case, values in cases.items():
+        check_types(values, book.get(case, next(iter(book.values()))), name)
+    differs = differences(block, resolved_block(shipped, name))
+    differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
+    differs = differs or differences(cases, book)  # a shared value that only a case refers to
+    return differs + differences({"seed": config["seed"]}, {"seed": shipped["seed"]})
 
 
 def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[Experiment]:
@@ -446,6 +469,8 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     if not waiting:
         return outcome
     by_name = {plan.experiment: plan for plan in plans}
+    # An experiment of few cases has long ones: they begin, and the short ones of the others fill the gaps at the end.
+    todo.sort(key=lambda job: len(by_name[job.experiment].jobs))
     with _pool(workers or available_cores(), progress, in_process=any(job.gui for job in todo)) as submit:
         pending: dict[Future[Any], Job | Plan] = {submit(execute, job): job for job in todo}
         pending |= {submit(assemble, by_name[name]): by_name[name] for name, cases in waiting.items() if not cases}
@@ -544,6 +569,8 @@ def begin_worker(queue: Any) -> None:
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)
     threadpool_limits(1)
+    gc.freeze()  # what is imported stays; without this the collector walks all of it again and again
+    gc.set_threshold(20_000)
     if queue is not None:
         Simulation.report = staticmethod(lambda simulated, duration: queue.put((os.getpid(), simulated, duration)))
 
