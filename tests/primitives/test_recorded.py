@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dexrepro.primitives.recorded import demonstrations, read_path, resampled
@@ -15,9 +15,11 @@ numbers = st.integers(-100_000, 100_000).map(lambda thousandths: thousandths / 1
 instants = st.lists(st.floats(1e-3, 10), min_size=2, max_size=30).map(lambda steps: np.cumsum([0.0, *steps]))
 
 
-@given(instants, st.integers(2, 200), st.data())
-def test_resampling_keeps_the_end_points_and_the_range(time, samples, data) -> None:
-    path = np.array(data.draw(st.lists(st.tuples(numbers, numbers), min_size=len(time), max_size=len(time))))
+@settings(deadline=None, max_examples=50)
+@given(st.lists(st.tuples(st.floats(1e-3, 10), numbers, numbers), min_size=2, max_size=20), st.integers(2, 200))
+def test_resampling_keeps_the_end_points_and_the_range(rows, samples) -> None:
+    steps, *path = np.array(rows).T
+    time, path = np.cumsum(steps), np.transpose(path)
     new = resampled(time, path, samples)
     assert new.shape == (samples, 2)
     assert new[[0, -1]] == pytest.approx(path[[0, -1]])
@@ -25,6 +27,7 @@ def test_resampling_keeps_the_end_points_and_the_range(time, samples, data) -> N
     assert (new <= path.max(axis=0) + 1e-9).all()
 
 
+@settings(deadline=None, max_examples=50)
 @given(instants, numbers, numbers)
 def test_resampling_reproduces_linear_motion(time, start, speed) -> None:
     new = resampled(time, start + speed * time[:, None], 50)

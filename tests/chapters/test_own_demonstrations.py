@@ -1,0 +1,72 @@
+"""Demonstrations of the user's own: what they change, what is not defined for them, what cannot be used."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dexrepro.chapters.chapter5 import crossing, letters, obstacle_crossing
+from dexrepro.chapters.chapter7 import skills
+from dexrepro.config import InputError, compose_chapter, experiment_cases
+from dexrepro.runner import generator, live
+
+
+def configured(chapter: str, experiment: str, case: str, *overrides: str) -> Any:
+    given = [f"{experiment}.{text}" for text in overrides]
+    values = experiment_cases(compose_chapter(chapter, given), experiment)[case]
+    return live({**values, "perturbation": 0.0, "seed": 0})
+
+
+@pytest.fixture(autouse=True)
+def recordings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    share = np.linspace(0, 1, 60)
+    progress = share**3 * (10 - 15 * share + 6 * share**2)
+    for name, columns in {
+        "letter": (20 + 10 * np.sin(2 * np.pi * progress), 40 * progress),
+        "over": (12 * progress - 6, 0 * share, 5 * np.sin(np.pi * share)),
+    }.items():
+        np.savetxt(f"{name}.csv", np.column_stack([0.7 * share, *columns]), delimiter=",")
+
+
+def test_a_recorded_letter_keeps_its_ends_and_its_shape() -> None:
+    config = configured("5", "letter_accuracy", "default", "demonstrations=letter.csv", "unit=mm")
+    first, second = letters.demonstrations("A", config.demonstrations, 2, config, None)
+    assert np.array_equal(first.position, second.position)
+    assert first.duration == config.dmp.duration
+    assert first.position.shape == (config.dmp.samples, 2)
+    assert first.start == pytest.approx([2, 0], abs=1e-9)
+    assert first.goal == pytest.approx([2, 4], abs=1e-9)
+    assert np.ptp(first.position[:, 0]) == pytest.approx(2.0, abs=0.05)
+
+
+def test_only_the_crossings_with_files_are_recorded() -> None:
+    config = configured("5", "obstacle_crossing", "default", "demonstrations={1: over.csv}")
+    rng = generator(0, "obstacle_crossing", "demonstration")
+    one, two = (crossing.repetitions(blocks, config, rng) for blocks in (1, 2))
+    assert np.ptp(one, axis=0).max() == 0
+    assert np.ptp(two, axis=0).max() > 0
+
+
+def test_the_printed_amplitude_is_not_evaluated_where_it_is_not_defined() -> None:
+    config = configured("5", "obstacle_crossing", "printed_amplitude", "demonstrations={1: over.csv}")
+    recording = obstacle_crossing.simulate(config, lambda purpose: generator(0, "obstacle_crossing", purpose))
+    assert "not defined" in recording.status
+    assert obstacle_crossing.measure(recording, config) == {}
+
+
+@pytest.mark.parametrize(
+    ("files", "sentence"),
+    [
+        ("over.csv", r"demonstrations: start at \(-6, 0, 0\) cm instead of \(2.3, 0, 0\) cm; set shared.scene.start"),
+        ("letter.csv", "demonstrations: line 1 of 'letter.csv' has 3 numbers; it must have time, x, y, z"),
+        ("no*.csv", r"demonstrations: cannot read 'no\*.csv'"),
+    ],
+)
+def test_a_reach_that_cannot_be_used_gets_one_sentence(files: str, sentence: str) -> None:
+    config = configured("7", "reaching_demonstrations", "corrected", f"demonstrations={files}")
+    with pytest.raises(InputError, match=sentence):
+        skills.demonstrate(config)
