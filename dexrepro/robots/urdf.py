@@ -94,6 +94,10 @@ class _Tree:
             shapes += _shapes(self.links[part], Pose.of(frame))
             if (inertial := self.links[part].find("inertial")) is not None:
                 parts.append(_inertial(inertial, frame))
+                if parts[-1][0] < 0:
+                    raise ValueError(
+                        f"link '{part}' of '{path}' has the mass {parts[-1][0]:g} kg; it must not be negative"
+                    )
         if not parts:
             raise ValueError(f"link '{name}' of '{path}' moves but has no <inertial>")
         mass = sum(m for m, _, _ in parts)

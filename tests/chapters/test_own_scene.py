@@ -140,7 +140,8 @@ FIXED = "{_target_: dexrepro.control.holding.FixedDistance, dt: 1, displacement:
         ("arm", "{_target_: dexrepro.robots.urdf.from_urdf, path: no.urdf, end: tip}", "no URDF file 'no.urdf'"),
         ("arm", TINY.replace("end: tip", "end: hand"), "has no link 'hand'; there are: base, upper, fore, tip"),
         ("arm", "{path: tiny.urdf, end: tip}", "scene.arm is no arm"),
-        ("leader", OWN_LINE, r"the point \(0.72, 0.1, 0\) m that scene.leader reaches at 0 s"),
+        ("leader", OWN_LINE, r"the point \(0.72, 0.1, 0\) m of scene.leader \+ offset at 0 s: arm .* comes no closer"),
+        ("leader", LINE.replace("0.1, 0]", "0.1, 0.2]"), r"at 0 s: the arm stays at z = 0 m"),
         ("leader", "{circle: {radius: 1}, line: {period: 1}}", "names line, circle: give exactly one of points, line"),
         ("leader", "{points: [[0, 0, 0]]}", "scene.leader.points: give two rows or more of time"),
         ("leader", "{circle: {radius: 1}}", "scene.leader.circle: no configuration key 'centre'"),
@@ -160,5 +161,5 @@ def test_what_cannot_be_used_gets_one_sentence(key: str, value: str, sentence: s
 
 def test_a_negative_mass_gets_one_sentence(folder: Path) -> None:
     (folder / "tiny.urdf").write_text(URDF.replace('<mass value="1"/>', '<mass value="-1"/>'))
-    with pytest.raises(InputError, match="link 'upper': mass -1 kg"):
+    with pytest.raises(InputError, match=r"link 'upper' of 'tiny\.urdf' has the mass -1 kg"):
         scene.simulate(configured(), None)

@@ -70,7 +70,8 @@ def test_limits_and_base_are_those_given(path: Path) -> None:
         (('<link name="tip"', '<link name="toe"'), "has no link 'tip'; there are: floor"),
         (("continuous", "prismatic"), "joint 'yaw' of .* is prismatic"),
         ((INERTIAL.format(0.1, 0.5), ""), None),
-        (('value="2"', 'value="-4"'), "link 'one': mass -3 kg"),
+        (('value="0.2"', 'value="-0.2"'), "link 'eye' of .* has the mass -0.2 kg"),
+        (('value="2"', 'value="-4"'), "link 'one' of .* has the mass -4 kg; it must not be negative"),
     ],
 )
 def test_a_file_that_cannot_be_used_gets_one_sentence(path: Path, change: tuple[str, str], sentence: str) -> None:

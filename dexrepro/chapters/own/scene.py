@@ -19,6 +19,7 @@ from dexrepro.physics.plant import RigidBody
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.inverse_kinematics import Unreachable, solve
+from dexrepro.robots.kinematics import forward
 
 Array = NDArray[np.float64]
 
@@ -63,11 +64,14 @@ def start(config: Config, path: Path) -> Array:
         raise InputError(f"scene.start = {found} is not allowed: it must be {arm.dof} joint angles, or null")
     for time in np.linspace(0.0, config.duration, CHECKED):
         place = path(time).position + offset
+        where = f"({', '.join(f'{value:.3g}' for value in place)}) m of scene.leader + offset at {time:.3g} s"
         try:
             found = solve(arm, place, start=found, restarts=5)
         except Unreachable as error:
-            point = ", ".join(f"{value:.3g}" for value in place)
-            raise InputError(f"the point ({point}) m that scene.leader reaches at {time:.3g} s: {error}") from error
+            raise InputError(f"the point {where}: {error}") from error
+        height = forward(arm, found)[0][2]
+        if abs(height - place[2]) > 1e-4:  # the inverse kinematics of a planar arm looks at x and y alone
+            raise InputError(f"the point {where}: the arm stays at z = {height:g} m")
         first = found if first is None else first
     assert first is not None
     return first
