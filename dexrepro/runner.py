@@ -12,6 +12,7 @@ import json
 import multiprocessing
 import os
 import platform
+import re
 import shutil
 import signal
 import subprocess
@@ -293,7 +294,11 @@ def live(config: Mapping[str, Any]) -> Config:
             while cause.__cause__ is not None:
                 cause = cause.__cause__
             text = " ".join(str(cause).split())
-            raise InputError(f"cannot build the objects of the configuration: {text}") from error
+            if isinstance(cause, LookupError | AttributeError | TypeError):  # these say little by themselves
+                text = f"{type(cause).__name__}: {text}"
+            where = re.search(r"full_key: (\S+)", str(error))
+            key = f" ({where[1]})" if where else ""
+            raise InputError(f"cannot build the objects of the configuration{key}: {text}") from error
     return Config.of(config)
 
 

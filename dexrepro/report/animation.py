@@ -46,6 +46,7 @@ def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
     raw = yaml.safe_load((folder / "config.yaml").read_text())["cases"][chosen]
     target = folder / "animation" / f"{chosen}.{kind}"
     target.parent.mkdir(exist_ok=True)
+    raw |= {"law": None} if "law" in raw else {}  # a scene needs none, and the user's may be in another folder
     frames = _frames(experiment, live(raw), recording)
     _write_gif(frames, target) if kind == "gif" else _write_mp4(frames, target)
     return target
