@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import hashlib
 import importlib.util
 import json
-import multiprocessing
 import os
 import platform
 import shutil
-import signal
 import subprocess
-import sys
+import tempfile
 import time
 import traceback
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from functools import cache
@@ -40,8 +37,10 @@ from dexrepro.config import (
     resolved_block,
 )
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
+from dexrepro.pool import pool
 from dexrepro.progress import Progress, Silent
 from dexrepro.storage import (
+    claimed,
     finite,
     load_recording,
     locked,
@@ -197,9 +196,7 @@ def writable(results: Path) -> Path:
     """The results folder, made if needed. Raises InputError where nothing can be written."""
     try:
         (results / ".cache").mkdir(parents=True, exist_ok=True)
-        probe = results / ".cache" / f".probe-{os.getpid()}"
-        probe.touch()
-        probe.unlink()
+        tempfile.TemporaryFile(dir=results / ".cache").close()
     except OSError as error:
         raise InputError(f"results = {results} is not allowed: cannot write there ({error.strerror})") from error
     return results
@@ -218,7 +215,7 @@ def source_digest(chapter: str, with_report: bool = False) -> str:
         parts = path.relative_to(root).parts
         if parts[0] == "chapters" and len(parts) > 2 and parts[1] != f"chapter{chapter}":
             continue
-        if parts[0] in ("cli.py", "baselines.py", "progress.py", "study.py", "scaffold.py") or (
+        if parts[0] in ("cli.py", "baselines.py", "progress.py", "study.py", "scaffold.py", "sweep.py") or (
             parts[0] == "report" and not with_report
         ):
             continue
@@ -272,6 +269,16 @@ def execute(job: Job) -> dict[str, Any]:
         save_recording(recording, folder / "series", job.case, experiment.rate)
         write_json(folder / "case.json", {"entry": entry, "metrics": measured, "config": job.config})
     return entry
+
+
+def complete(job: Job) -> dict[str, Any]:
+    """Execute a case unless another process has finished it meanwhile."""
+    folder = Path(job.folder)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with claimed(folder.parent, folder.name):
+        if (folder / "case.json").exists():
+            return dict(read_json(folder / "case.json")["entry"])
+        return execute(job)
 
 
 def assemble(plan: Plan) -> None:
@@ -400,7 +407,7 @@ def _prune(plan: Plan) -> None:
                     shutil.rmtree(old, ignore_errors=True)
 
 
-# ------------------------------------------------------------------------------------------------------------ pool
+# ------------------------------------------------------------------------------------------------------- scheduling
 
 
 def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progress: Progress | None = None) -> Outcome:
@@ -410,18 +417,19 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     waiting: dict[str, set[str]] = {}
     todo: list[Job] = []
     for plan in plans:
+        for parent in (Path(plan.jobs[0].folder).parent, plan.folder.parent):
+            remove_leftovers(parent)
         if not force and _up_to_date(plan):
             outcome.folders[plan.experiment] = plan.folder
             continue
-        remove_leftovers(Path(plan.jobs[0].folder).parent)
         missing = [job for job in plan.jobs if force or not (Path(job.folder) / "case.json").exists()]
         waiting[plan.experiment] = {job.case for job in missing}
         todo += missing
     if not waiting:
         return outcome
     by_name = {plan.experiment: plan for plan in plans}
-    with _pool(workers or available_cores(), progress, in_process=any(job.gui for job in todo)) as submit:
-        pending: dict[Future[Any], Job | Plan] = {submit(execute, job): job for job in todo}
+    with pool(workers, progress.listen, in_process=any(job.gui for job in todo)) as submit:
+        pending: dict[Future[Any], Job | Plan] = {submit(execute if force else complete, job): job for job in todo}
         pending |= {submit(assemble, by_name[name]): by_name[name] for name, cases in waiting.items() if not cases}
         progress.begin(len(todo))
         while pending:
@@ -471,55 +479,6 @@ def _keep_traceback(task: Job | Plan, error: BaseException) -> None:
     name = task.case if isinstance(task, Job) else "assemble"
     with contextlib.suppress(OSError):
         (folder / f"{name}.error.txt").write_text("".join(traceback.format_exception(error)))
-
-
-def available_cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-@contextlib.contextmanager
-def _pool(workers: int, progress: Progress, in_process: bool) -> Iterator[Any]:
-    if in_process:
-        yield _run_here
-        return
-    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
-    queue = context.SimpleQueue()
-    progress.listen(queue)
-    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=begin_worker, initargs=(queue,))
-    try:
-        yield pool.submit
-    except BaseException:
-        for process in list(pool._processes.values()):
-            process.kill()
-        pool.shutdown(wait=False, cancel_futures=True)
-        raise
-    pool.shutdown()
-
-
-def _run_here(function: Any, argument: Any) -> Future[Any]:
-    future: Future[Any] = Future()
-    try:
-        future.set_result(function(argument))
-    except Exception as error:
-        future.set_exception(error)
-    return future
-
-
-_queue: Any = None
-
-
-def begin_worker(queue: Any) -> None:
-    """Leave Ctrl-C to the parent, die with it, use one BLAS thread, and report simulated time."""
-    from threadpoolctl import threadpool_limits
-
-    from dexrepro.physics.loop import Progress as Simulation
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)
-    threadpool_limits(1)
-    if queue is not None:
-        Simulation.report = staticmethod(lambda simulated, duration: queue.put((os.getpid(), simulated, duration)))
 
 
 def summary_rows(outcome: Outcome) -> list[dict[str, Any]]:
