@@ -100,8 +100,8 @@ def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
     arguments = [quoted(argument) for argument in arguments]
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
-        _check_sweep([argument for argument in arguments if not argument.startswith("-") and "=" in argument])
-        return _launch(arguments, _run_job)
+        overrides = [argument for argument in arguments if not argument.startswith("-") and "=" in argument]
+        return _launch([*arguments, *_checked_chapter(overrides)], _run_job)
     extra_dir, overrides = _config_dir_option(arguments)
     return run_overrides(overrides, extra_dir)
 
@@ -228,12 +228,14 @@ def _implied_chapters(overrides: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(owner[name] for name in named if name in owner))
 
 
-def _check_sweep(overrides: Sequence[str]) -> None:
-    """Refuse what no job of a sweep could use, before Hydra starts any."""
+def _checked_chapter(overrides: Sequence[str]) -> list[str]:
+    """Refuse what no job of a sweep could use, before Hydra starts any; the chapter where overrides only imply it."""
     from dexrepro.config import check_overrides, compose_chapter
 
     numbers, rest = chapters_of(overrides)
     check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
+    named = any(re.match(r"chapter=|figure=.*,", text) for text in overrides)
+    return [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and not named else []
 
 
 def _launch(arguments: Sequence[str], job: Callable[[Any], None]) -> int:

@@ -27,6 +27,8 @@ def pool(
     if in_process:
         yield _submit_here
         return
+    import dexrepro.physics.loop  # noqa: F401  imported once, before the processes fork
+
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
     queue = context.SimpleQueue() if listen else None
     if listen:

@@ -55,7 +55,7 @@ from dexrepro.storage import (
 PACKAGES = ("numpy", "scipy", "pybullet", "pandas", "matplotlib", "hydra-core")
 NUMERICAL = ("numpy", "scipy", "pybullet")  # those whose version can change a number
 SUMMARY = "summary"  # stands for the numbers over several cases in nested metrics
-KEPT = 6  # cached results a case
+KEPT, RECENT = 6, 7 * 24 * 3600  # cached results a case: so many, and all of the last seconds (a sweep may need them)
 
 
 @dataclass(frozen=True)
@@ -415,7 +415,7 @@ def _prune(plan: Plan) -> None:
         with locked(parent):
             entries = sorted(parent.glob(f"{job.case}-" + "?" * 16), key=lambda p: p.stat().st_mtime, reverse=True)
             for old in entries[KEPT:]:
-                if str(old) != job.folder:
+                if str(old) != job.folder and old.stat().st_mtime < time.time() - RECENT:
                     shutil.rmtree(old, ignore_errors=True)
 
 
@@ -440,6 +440,8 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     if not waiting:
         return outcome
     by_name = {plan.experiment: plan for plan in plans}
+    import dexrepro.report.style  # noqa: F401  imported once, before the processes fork
+
     with pool(workers, progress.listen, in_process=any(job.gui for job in todo)) as submit:
         pending: dict[Future[Any], Job | Plan] = {submit(execute if force else complete, job): job for job in todo}
         pending |= {submit(assemble, by_name[name]): by_name[name] for name, cases in waiting.items() if not cases}
