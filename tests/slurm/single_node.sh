@@ -44,6 +44,7 @@ TaskPlugin=task/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_Core
 ReturnToService=2
+KillWait=1
 NodeName=$node NodeAddr=127.0.0.1 CPUs=$(getconf _NPROCESSORS_ONLN) State=UNKNOWN
 PartitionName=all Nodes=$node Default=YES State=UP
 CONF
@@ -72,7 +73,7 @@ sinfo
 [ "$(sinfo -h -o %t)" = idle ]
 
 cd "$folder"
-sweep=(dexrepro run -m chapter=2 only=movement_estimation 'seed=range(20)' movement_estimation.duration=2.0
+sweep=(dexrepro run -m chapter=2 only=movement_estimation 'seed=range(20)' movement_estimation.duration=1.0
     hydra/launcher=submitit_slurm hydra.launcher.partition=all hydra.launcher.cpus_per_task=1 hydra.launcher.timeout_min=10)
 results() { ls results/runs/*/run.json 2> /dev/null; }
 stamps() { results | xargs -r stat -c '%n %y' | sort; }
@@ -81,11 +82,10 @@ echo "\$ ${sweep[*]}"
 "${sweep[@]}" 2> killed.log &
 parent=$!
 for _ in $(seq 240); do [ "$(results | wc -l)" -ge 4 ] && break || sleep 0.5; done
-sleep 3
 squeue
-victim=$(squeue -h -t RUNNING -o '%M %i' | sort | head -n 1 | cut -d ' ' -f 2)  # the one that began last
-echo "killing job $victim"
-scancel --signal=KILL "$victim"
+until victim=$(pgrep -n -f "^[^ ]*python[^ ]* -u -m submitit.core._submit $folder"); do sleep 0.2; done
+echo "killing process $victim, job $(tr '\0' '\n' < "/proc/$victim/environ" | sed -n 's/^SLURM_ARRAY_TASK_ID=//p')"
+kill -KILL "$victim"
 wait $parent && status=0 || status=$?
 echo "exit status $status: $(tail -n 1 killed.log)"
 while [ -n "$(squeue -h)" ]; do sleep 1; done
@@ -95,6 +95,6 @@ stamps > before
 echo "the same command again:"
 "${sweep[@]}"
 stamps > after
-echo "exit status 0: $(results | wc -l) of 20 results," \
+echo "$(results | wc -l) of 20 results," \
     "written again: $(comm -23 before after | wc -l), new: $(comm -13 before after | wc -l)"
 [ "$(results | wc -l)" = 20 ] && [ -z "$(comm -23 before after)" ]
