@@ -97,4 +97,4 @@ echo "the same command again:"
 stamps > after
 echo "$(results | wc -l) of 20 results," \
     "written again: $(comm -23 before after | wc -l), new: $(comm -13 before after | wc -l)"
-[ "$(results | wc -l)" = 20 ] && [ -z "$(comm -23 before after)" ]
+[ "$(results | wc -l)" = 20 ] && [ -z "$(comm -23 before after)" ] && [ -n "$(comm -13 before after)" ]
