@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import gc
 import multiprocessing
 import os
 import signal
@@ -65,6 +66,8 @@ def begin_worker(queue: Any) -> None:
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)
     threadpool_limits(1)
+    gc.freeze()  # what is imported stays; without this the collector walks all of it again and again
+    gc.set_threshold(20_000)
     if queue is not None:
         Simulation.report = staticmethod(lambda simulated, duration: queue.put((os.getpid(), simulated, duration)))
 

@@ -127,6 +127,8 @@ def plan_chapter(
         raise InputError(f"unknown chapter '{chapter}'; chapters: {', '.join(chapters.numbers())}")
     config = composed if composed is not None else compose_chapter(chapter, overrides, extra_dir)
     shipped = compose_chapter(chapter)
+    if config["gui"]:
+        _require_display()
     results = writable(Path(config["results"]))
     plans, skipped = [], {}
     for experiment in select(chapter, config["only"], config["figure"]):
@@ -136,6 +138,15 @@ def plan_chapter(
             continue
         plans.append(_plan(chapter, experiment.name, config, shipped, results, perturbation))
     return plans, skipped
+
+
+def _require_display() -> None:
+    from dexrepro.physics.loading import can_open_window
+
+    if not can_open_window():
+        shown = os.environ.get("DISPLAY")
+        why = f"DISPLAY = {shown} cannot be opened" if shown else "DISPLAY is not set"
+        raise InputError(f"gui = true is not allowed: it needs a display, and there is none ({why})")
 
 
 def _plan(
@@ -440,6 +451,8 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     if not waiting:
         return outcome
     by_name = {plan.experiment: plan for plan in plans}
+    # An experiment of few cases has long ones: they begin, and the short ones of the others fill the gaps at the end.
+    todo.sort(key=lambda job: len(by_name[job.experiment].jobs))
     import dexrepro.report.style  # noqa: F401  imported once, before the processes fork
 
     with pool(workers, progress.listen, in_process=any(job.gui for job in todo)) as submit:
