@@ -87,7 +87,7 @@ def kill_all(sweep: int) -> None:
 
 def finished(folder: Path) -> dict[Path, int]:
     """Cases and results that are there, with the instant each was written [ns]."""
-    paths = [*folder.glob("results/.cache/*/*/case.json"), *folder.glob("results/runs/*/run.json")]
+    paths = [*folder.glob("results/.cache/*/[!.]*/case.json"), *folder.glob("results/runs/[!.]*/run.json")]
     return {path: path.stat().st_mtime_ns for path in paths}
 
 
