@@ -21,8 +21,16 @@ from scipy import stats
 
 from dexrepro import chapters
 from dexrepro.baselines import baseline_dir
-from dexrepro.config import InputError, Provenance, compose_chapter, experiment_cases, nearest, provenance
-from dexrepro.experiment import Claim, Metrics
+from dexrepro.config import (
+    InputError,
+    Provenance,
+    compose_chapter,
+    experiment_cases,
+    nearest,
+    provenance,
+    resolved_block,
+)
+from dexrepro.experiment import Claim, Config, Metrics
 from dexrepro.runner import available_cores, begin_worker, flat, generator, live, summarise
 from dexrepro.storage import finite, read_json, write_json
 
@@ -70,7 +78,7 @@ def _references(composed: Mapping[str, Any], node: Any) -> set[str]:
 
 
 def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float], dict[str, Any]]:
-    """Sample number ``index``: the values drawn, and the configuration of every case under them."""
+    """Sample number ``index``: the values drawn, and under them the experiment's block with all its ``cases``."""
     composed = copy.deepcopy(_shipped(chapter))
     rng = generator(index, experiment, "study")
     values: dict[str, float] = {}
@@ -83,13 +91,14 @@ def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float], d
         values[key] = value
         _set(composed, key, value)
     values["seed"] = int(rng.integers(1 << 16))
-    return values, experiment_cases(composed, experiment)
+    return values, {**resolved_block(composed, experiment), "cases": experiment_cases(composed, experiment)}
 
 
 def evaluate(chapter: str, experiment: str, index: int) -> dict[str, Any]:
     """Simulate one sample and return its values and the margin of every claim (None where a case of it failed)."""
     start = time.perf_counter()
-    values, cases = draw(chapter, experiment, index)
+    values, block = draw(chapter, experiment, index)
+    cases = block["cases"]
     seed = int(values["seed"])
     loaded = chapters.load(chapter)
     definition, claims = loaded.experiment(experiment), loaded.claims_of(experiment)
@@ -103,7 +112,7 @@ def evaluate(chapter: str, experiment: str, index: int) -> dict[str, Any]:
         except Exception as problem:
             errors.append(f"{case}: {type(problem).__name__}: {problem}")
     if len(metrics) == len(cases):
-        summarise(definition, metrics, live({"cases": cases}))
+        summarise(definition, metrics, Config.of(block))
     measured = finite(flat(experiment, metrics))
     margins = {claim.id: claim.predicate.margin(measured) for claim in claims if claim.predicate}
     wall = time.perf_counter() - start

@@ -9,7 +9,7 @@ class PassiveImpedance:
     """Reference that obeys m a + b v = f_x - f_x,d (Sect. 2.4.1.3), by the second-order Runge-Kutta method.
 
     mass: m_pi [kg]. damping: b_pi [N s/m]. desired_force: [N]. dt: control period [s], over which the force is held.
-    ``velocity`` is that of the reference [m/s]. Behind a partner of constant velocity v it keeps the force error b_pi v.
+    ``velocity`` is the reference's [m/s]. Behind a partner of constant velocity v it keeps the force error b_pi v.
     """
 
     def __init__(self, *, mass: Any, damping: Any, desired_force: Any, dt: float) -> None:
