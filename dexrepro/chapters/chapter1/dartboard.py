@@ -208,5 +208,12 @@ def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> 
             "losses_median_5mm", "wins_median_10mm", "losses_median_10mm", "general_radius", "proposed_radius",
             "general_score", "proposed_score", "general_time", "proposed_time", "general_load",
             "proposed_load")  # fmt: skip
-    rows = [{"case": case} | {key: metrics[case].get(key) for key in keys} for case in recordings]
+    units = {"radius": "mm", "time": "s", "load": "deg s"}
+    rows = []
+    for case in recordings:
+        row: dict[str, Any] = {"case": case}
+        for key in keys:
+            unit = units.get(key.rpartition("_")[2])
+            row[key.replace("_", " ") + (f" [{unit}]" if unit else "")] = metrics[case].get(key)
+        rows.append(row)
     return {"T1.D": pd.DataFrame(rows)}

@@ -247,6 +247,14 @@ def _draw_errors(recordings: dict[str, Recording], metrics: Any) -> Any:
     return figure
 
 
+COLUMNS = {
+    "rmse": "RMSE [N]",
+    "rmse_late": f"RMSE after {LATE:g} s [N]",
+    "iae": "integral of the error [N s]",
+    "settling": "settling [s]",
+}
+
+
 def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
     laws = dict.fromkeys(case.partition("_")[2] for case in metrics if case[:2] in CASES)
     rows = []
@@ -254,7 +262,6 @@ def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> 
         row: dict[str, Any] = {"law": law.replace("_", " ")}
         for case in CASES:
             values = metrics.get(f"{case}_{law}", {})
-            row |= {f"{case} {key} [{unit}]": values.get(key) for key, unit in
-                    (("rmse", "N"), ("rmse_late", "N"), ("iae", "N s"), ("settling", "s"))}  # fmt: skip
+            row |= {f"{case} {text}": values.get(key) for key, text in COLUMNS.items()}
         rows.append(row)
     return {"T1.A": pd.DataFrame(rows)}

@@ -138,4 +138,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
 
 
 def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
-    return {"T1.G": pd.DataFrame([{"case": case.replace("_", " "), **metrics[case]} for case in recordings])}
+    table = pd.DataFrame([{"case": case.replace("_", " "), **metrics[case]} for case in recordings])
+    names = {"contact": "contact after [s]", "holding_at_end": "holding at the end", "rmse": "RMS force error [N]",
+             "bias": "mean force error [N]"}  # fmt: skip
+    return {"T1.G": table.rename(columns=names)}

@@ -292,6 +292,7 @@ def _draw_gains(gains: Any, recordings: dict[str, Recording], metrics: Any, conf
 
 
 def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
-    keys = ("runs", "successes", "slip", "rmse", "bounces", "switches", "least_moved")
-    rows = [{"case": case} | {key: metrics[case].get(key) for key in keys} for case in recordings]
+    columns = {"runs": "runs", "successes": "successes", "slip": "largest slip [m]", "rmse": "RMS force error [N]",
+               "bounces": "bounces", "switches": "switches", "least_moved": "least way [m]"}  # fmt: skip
+    rows = [{"case": case} | {text: metrics[case].get(key) for key, text in columns.items()} for case in recordings]
     return {"T1.F": pd.DataFrame(rows)}

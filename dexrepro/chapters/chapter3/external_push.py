@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import reach
-from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics, rms
+from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics, rms
 from dexrepro.chapters.chapter3.scene import ARM, FOREARM, MID_FOREARM, Touching, build, gripper_arm
 from dexrepro.control.momentum_observer import MomentumObserver
 from dexrepro.experiment import Config, Figure, Metrics, Recording
@@ -278,7 +278,13 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    tables = {"T3.B": pd.DataFrame(rows)}
+    tables = {"T3.B": pd.DataFrame(rows).rename(columns=COLUMNS)}
     if "exact_plus" in recordings:
-        tables["T3.C"] = recordings["exact_plus"].frames["sweep"]
+        headers = {
+            "gain": "K_Ex [1/s]",
+            "clean_error": "error [-]",
+            "lag": "lag [s]",
+            "noisy_error": "error, noise [-]",
+        }
+        tables["T3.C"] = recordings["exact_plus"].frames["sweep"].rename(columns=headers)
     return tables

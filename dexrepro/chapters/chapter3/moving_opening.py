@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import drawings, reach
-from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
+from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
 from dexrepro.chapters.chapter3.scene import ARM, Touching, build
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 from dexrepro.physics.world import Camera, World
@@ -167,4 +167,4 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    return {"T3.D": pd.DataFrame(rows)}
+    return {"T3.D": pd.DataFrame(rows).rename(columns=COLUMNS)}

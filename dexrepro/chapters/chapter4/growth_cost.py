@@ -140,5 +140,5 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
         for case, (label, _) in LABELS.items()
         if case in recordings
     ]
-    table = pd.concat(tables)
+    table = pd.concat(tables).rename(columns={"memory_kb": "memory [kB]", "step_us": "shortest step [µs]"})
     return {"T4.D": table[["network", *(name for name in table.columns if name != "network")]]}

@@ -162,9 +162,14 @@ def _draw_runs(recordings: Mapping[str, Recording], metrics: Mapping[str, Metric
 
 
 def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
-    names = ("clearance", "bound_use", "tip_rms", "end_error")
+    names = {"clearance": "clearance [cm]", "bound_use": "largest share of the bound", "tip_rms": "tip error RMS [mm]",
+             "end_error": "distance from the goal [mm]"}  # fmt: skip
     rows = [
-        {"blocks": 2 if case.startswith("two") else 3, "goal": case.split("_")[1], **{n: values[n] for n in names}}
+        {
+            "blocks": 2 if case.startswith("two") else 3,
+            "goal": case.split("_")[1],
+            **{text: values[name] for name, text in names.items()},
+        }
         for case, values in metrics.items()
         if case.startswith(("two_", "three_"))
     ]

@@ -221,10 +221,15 @@ VARIANTS = (
 def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
-    columns = ("max_x", "max_y", "bound_used", "rms_x", "rms_y", "early_x", "early_y", "nodes", "features",
-               "network_force", "feature_power", "gain")  # fmt: skip
+    columns = {"max_x": "largest e_x [mm]", "max_y": "largest e_y [mm]", "bound_used": "share of the bound used",
+               "rms_x": "rms e_x [mm]", "rms_y": "rms e_y [mm]", "early_x": "rms e_x, early [mm]",
+               "early_y": "rms e_y, early [mm]", "nodes": "nodes", "features": "features",
+               "network_force": "rms network force [N]", "feature_power": "feature power [-]",
+               "gain": "adaptation gain [-]"}  # fmt: skip
     rows = [
-        {"case": case, **{name: metrics[case].get(name) for name in columns}} for case in recordings if case in metrics
+        {"case": case, **{text: metrics[case].get(name) for name, text in columns.items()}}
+        for case in recordings
+        if case in metrics
     ]
     return {
         "T8.1": _parameters(config),

@@ -231,7 +231,12 @@ def tabulate(
     rows = [
         {"case": case, **{name: metrics[case].get(name) for name in columns}} for case in recordings if case in metrics
     ]
-    tables = {"T8.B": pd.DataFrame(rows), "T8.Sb": sensitivity_table(VARIANTS, metrics)}
+    names = {"bound_used": "share of the bound used", "max_error_x": "largest z_1x [mm]",
+             "max_error_y": "largest z_1y [mm]", "force_jump": "force jump [N]", "force_rate": "force rate [N/s]",
+             "reference_speed": "reference speed [m/s]", "gain_x": "K_x [N/m]", "gain_s": "K_s [N]",
+             "gain_error_x": "error of K_x [-]", "gain_error_s": "error of K_s [-]",
+             "violated_at": "violated at [s]", "oscillation": "oscillation [mm]"}  # fmt: skip
+    tables = {"T8.B": pd.DataFrame(rows).rename(columns=names), "T8.Sb": sensitivity_table(VARIANTS, metrics)}
     if "soft" in recordings:
         frames = recordings["soft"].frames
         tables["T8.2"] = frames["iterates"]

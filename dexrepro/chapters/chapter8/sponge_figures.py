@@ -185,7 +185,16 @@ def tabulate(
     ends = {
         f"{case}_end": {"peak_compression": metrics[case].get("final_compression")} for case in _BASE if case in metrics
     }
-    tables = {"T8.E": pd.DataFrame(rows), "T8.Sc": sensitivity_table(VARIANTS, {**metrics, **ends})}
+    names = {"stiffness": "stiffness [N/m]", "final_compression": "final compression [mm]",
+             "final_force": "final force [N]", "peak_compression": "peak compression [mm]",
+             "peak_force": "peak force [N]", "max_error_x": "largest z_1x [mm]", "max_error_y": "largest z_1y [mm]",
+             "max_error_z": "largest z_1z [mm]", "bound_used": "share of the bound used", "gain_x": "K_x [N/m]",
+             "gain_s": "K_s [N/m]", "gain_error": "error of the gain [-]", "peak_torque": "peak torque [N m]",
+             "stopped_at": "stopped at [s]"}  # fmt: skip
+    tables = {
+        "T8.E": pd.DataFrame(rows).rename(columns=names),
+        "T8.Sc": sensitivity_table(VARIANTS, {**metrics, **ends}),
+    }
     if "learned" in recordings:
         tables["T8.F"] = recordings["learned"].frames["iterates"]
         tables["T8.G"] = recordings["learned"].frames["noise"]
