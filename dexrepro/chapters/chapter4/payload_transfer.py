@@ -120,7 +120,7 @@ def _draw_phases(recording: Recording, config: Config) -> Any:
         panel.imshow(shown[f"phase{k}"])
         panel.set_axis_off()
         panel.set_title(f"phase {'I' * k}, {config.cases['reuse'].task.pictured[k - 1]:.1f} s: {where}")
-    axes[0].annotate("orange: A, B, C\ngreen: D, E, F", (0.02, 0.03), xycoords="axes fraction", size=7)
+    axes[0].annotate("orange: A, B, C; green: D, E, F", (0, -0.04), xycoords="axes fraction", size=7, va="top")
     style.title(figure, "The payload hangs from the gripper on a ball joint")
     return figure
 
@@ -146,7 +146,7 @@ def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
     for panel in axes[0]:
         style.band(panel, time, -limit, limit, zorder=-5)
         panel.set_ylim(-220, 220)
-    axes[1, 0].legend(loc="upper right")
+    style.legend_below(figure, {label: style.LINES[line] for _, label, line in shown})
     _draw_bars(figure, axes, metrics)
     reuse, fixed = metrics["reuse"]["rmse_mm"], metrics["rbf_medium"]["rmse_mm"]
     style.title(
