@@ -248,7 +248,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
 def _draw_forces(recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(2, 3, height=3.6, sharey="row")
+    figure, axes = style.subplots(2, 3, height=3.8, sharey="row")
     for column, trial in enumerate(PRINTED):
         for law, role in reversed(LAWS.items()):
             recording = recordings[f"{trial}_{law}"]
@@ -259,12 +259,12 @@ def _draw_forces(recordings: dict[str, Recording], metrics: Any, config: Config)
         axes[0, column].set_title("RMSE " + " / ".join(f"{value:.2f}" for value in numbers) + " N")
         for row in (0, 1):
             axes[row, column].axhline(config.desired_force, **style.LINES["reference"])
-        style.event(axes[0, column], config.settled, "8 s")
+        style.event(axes[0, column], config.settled, f"{config.settled:g} s")
         axes[0, column].set_ylim(0, 30)
         axes[1, column].set(xlabel="Time [s]", ylim=(0, 30))
     axes[0, 0].set_ylabel("Contact force [N]")
     axes[1, 0].set_ylabel("First 1.5 s [N]")
-    axes[0, 2].legend(loc="lower right", ncols=3, columnspacing=0.8, handlelength=1.4)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     best = all(
         metrics[f"{t}_proposed"]["rmse"] < min(metrics[f"{t}_{law}"]["rmse"] for law in ("passive", "fixed"))
         for t in PRINTED
@@ -281,8 +281,8 @@ def _draw_forces(recordings: dict[str, Recording], metrics: Any, config: Config)
 def _draw_scene(recording: Recording) -> Any:
     from dexrepro.report import style
 
-    figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.9)
-    axis.imshow(recording.images["b"])
+    figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
+    axis.imshow(style.trimmed(recording.images)["b"])
     axis.set_axis_off()
     style.title(figure, "Two simulated Baxter arms hold a soft object")
     return figure
@@ -292,11 +292,12 @@ def _draw_task(recording: Recording) -> Any:
     from dexrepro.report import style
 
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 6.0))
-    grid = figure.add_gridspec(4, 3, height_ratios=(1.5, 1.5, 0.8, 0.6))
+    grid = figure.add_gridspec(4, 3, height_ratios=(1.4, 1.4, 0.8, 0.6))
+    pictures = style.trimmed(recording.images)
     words = ("start", "on the left", "tilted", "swinging", "over the right", "pressed")
     for k, (name, word) in enumerate(zip("abcdef", words)):
         axis = figure.add_subplot(grid[k // 3, k % 3])
-        axis.imshow(recording.images[name])
+        axis.imshow(pictures[name])
         axis.set_axis_off()
         style.panel(axis, name, word)
     path, tilt = figure.add_subplot(grid[2, :]), figure.add_subplot(grid[3, :])

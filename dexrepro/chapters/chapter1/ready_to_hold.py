@@ -246,7 +246,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
 def _draw_field(field: pd.DataFrame, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(1, 3, height=2.5, sharey=True)
+    figure, axes = style.subplots(1, 3, height=2.25, sharey=True)
     for axis, word, (_, part) in zip(axes, ("far", "near", "touching"), field.groupby("distance", sort=False)):
         y, z = np.unique(part["y"]), np.unique(part["z"])
         grid = {key: part[key].to_numpy().reshape(len(z), len(y)) for key in ("potential", "fy", "fz")}
@@ -261,7 +261,9 @@ def _draw_field(field: pd.DataFrame, config: Config) -> Any:
         for k in (1, 2, 3):
             place = part[f"p{k}y"].iloc[0], part[f"p{k}z"].iloc[0]
             axis.plot(*place, "k.", markersize=4)
-            axis.annotate(f"$P_{k}$", place, xytext=(2, 3), textcoords="offset points", fontsize=8)
+            below = k == 3
+            axis.annotate(f"$P_{k}$", place, xytext=(0, -3 if below else 3), textcoords="offset points", fontsize=8,
+                          ha="center", va="top" if below else "bottom")  # fmt: skip
         axis.set_aspect("equal")
         axis.set(xlabel="Along the holding line [m]", title=f"DFR {word}, {1e3 * part['distance'].iloc[0]:.0f} mm away",
                  xlim=(-0.2, 0.6))  # fmt: skip
@@ -284,10 +286,10 @@ def _draw_camera(recording: Recording, config: Config) -> Any:
     axis.plot(0, 0, "+", color="black", label="true centre")
     axis.plot(seen[:, 0], seen[:, 2], "o", markersize=2, color=style.BOOK, alpha=0.6, label="measured")
     axis.set_aspect("equal")
-    axis.set(xlabel="x [mm]", ylabel="z [mm]", xlim=(-170, 170), ylim=(-170, 190))
-    axis.legend(loc="lower center", ncols=3, bbox_to_anchor=(0.5, 0.93), handletextpad=0.3, columnspacing=0.8)
+    axis.set(xlabel="x [mm]", ylabel="z [mm]", xlim=(-170, 170), ylim=(-170, 170))
+    figure.legend(loc="outside lower center", ncols=3, handletextpad=0.3, columnspacing=0.8)
     offset = np.linalg.norm(seen.mean(axis=0)) if len(centre) else 0.0
-    style.title(figure, f"Camera: {offset:.0f} mm off centre")
+    style.title(figure, f"The camera sees the object {offset:.0f} mm off centre")
     return figure
 
 
@@ -295,10 +297,11 @@ def _draw_task(recording: Recording, config: Config) -> Any:
     from dexrepro.report import style
 
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 7.6))
-    grid = figure.add_gridspec(6, 7, height_ratios=(0.8, 1.1, 1.1, 0.8, 0.6, 0.8))
+    grid = figure.add_gridspec(6, 7, height_ratios=(0.55, 1.1, 1.1, 0.8, 0.6, 0.8))
+    pictures = style.trimmed(recording.images)
     for k, (name, at) in enumerate(INSTANTS.items()):
         axis = figure.add_subplot(grid[0, k])
-        axis.imshow(recording.images[name])
+        axis.imshow(pictures[name])
         axis.set_axis_off()
         axis.set_title(f"({name}) {at:g} s", fontsize=7)
     axes = [figure.add_subplot(grid[row, :]) for row in range(1, 6)]

@@ -35,7 +35,7 @@ FIGURES = {
     "1.B": Figure(
         "Contact force on AFR with a rigid box while it is gripped and lifted, for five gains of the force law; the "
         "gain printed for the soft object (0.25) is the last. The force then alternates with every control sample.",
-        "A small gain holds the rigid box quietly, from 0.03 on the force jumps from sample to sample.",
+        "A small gain holds the rigid box quietly, from 0.02 on the force jumps from sample to sample.",
     ),
 }
 TABLES = {"T1.F": "Boxes carried into the bin"}
@@ -242,13 +242,16 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
 def _draw_boxes(recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 6.4))
-    grid = figure.add_gridspec(5, 3, height_ratios=(1, 1, 1, 1, 0.8))
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 5.6))
+    grid = figure.add_gridspec(5, 3, height_ratios=(0.75, 0.75, 0.75, 1, 0.8))
+    pictures = style.trimmed(
+        {(size, name): picture for size in SIZES for name, picture in recordings[size].images.items()}
+    )
     for column, size in enumerate(SIZES):
         recording = recordings[size]
         for row, name in enumerate(("held", "carried", "dropped")):
             axis = figure.add_subplot(grid[row, column])
-            axis.imshow(recording.images[name])
+            axis.imshow(pictures[size, name])
             axis.set_axis_off()
             if row == 0:
                 numbers = metrics[size]
@@ -261,13 +264,13 @@ def _draw_boxes(recordings: dict[str, Recording], metrics: Any, config: Config) 
                 height.plot(recording.time[part], recording[f"height_{k}"][part], color=style.RIVAL, linewidth=0.7)
         force.axhline(15.0, **style.LINES["reference"])
         force.set_ylim(0, 30)
-        height.set_xlabel("Time [s]")
+        height.set(xlabel="Time [s]", ylim=(0, 0.45))
         if column == 0:
             force.set_ylabel("Force [N]")
             height.set_ylabel("Height [m]")
     wins = sum(metrics[size]["successes"] or 0 for size in SIZES)
     runs = sum(metrics[size]["runs"] or 0 for size in SIZES)
-    style.title(figure, f"Rigid boxes of three sizes: {wins} of {runs} carried into the bin")
+    style.title(figure, f"Rigid boxes of three sizes: {wins} of {runs} are carried into the bin")
     return figure
 
 
@@ -282,11 +285,14 @@ def _draw_gains(gains: Any, recordings: dict[str, Recording], metrics: Any, conf
         axis.axhline(15.0, **style.LINES["reference"])
         axis.set(xlabel="Time [s]", title=f"{config.cases[case].law['gain']:g} m/(s N)", ylim=(0, 40))
     axes[0].set_ylabel("Contact force [N]")
-    style.title(figure, "A rigid box wants a small gain: from 0.02 on the contact force jumps between samples")
+    loud = [config.cases[case].law["gain"] for case in gains if (metrics[case]["rmse"] or 0.0) > 1.0]
+    found = f": from {min(loud):g} on the contact force jumps between samples" if loud else ""
+    style.title(figure, f"A rigid box wants a small gain{found}")
     return figure
 
 
 def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
-    keys = ("runs", "successes", "slip", "rmse", "bounces", "switches", "least_moved")
-    rows = [{"case": case} | {key: metrics[case].get(key) for key in keys} for case in recordings]
+    columns = {"runs": "runs", "successes": "successes", "slip": "largest slip [m]", "rmse": "RMS force error [N]",
+               "bounces": "bounces", "switches": "switches", "least_moved": "least way [m]"}  # fmt: skip
+    rows = [{"case": case} | {text: metrics[case].get(key) for key, text in columns.items()} for case in recordings]
     return {"T1.F": pd.DataFrame(rows)}

@@ -182,6 +182,6 @@ def _draw_result(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
     best = shown(metrics["proposed"]["rmse_circle"])
     style.title(
         figure,
-        f"The proposed law holds 10 N within {best:.2f} N rms on the circle (simulated Baxter, synthetic operator)",
+        f"The proposed law holds {config.desired_force:g} N within {best:.2f} N rms on the circle (simulated Baxter)",
     )
     return figure

@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import reach
-from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics, rms
+from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics, rms
 from dexrepro.chapters.chapter3.scene import ARM, FOREARM, MID_FOREARM, Touching, build, gripper_arm
 from dexrepro.control.momentum_observer import MomentumObserver
 from dexrepro.experiment import Config, Figure, Metrics, Recording
@@ -182,7 +182,8 @@ def _draw_steps() -> Any:
             velocity += step  # unit mass under a unit external torque
         time = step * np.arange(400)
         axes.plot(time, seen, label=f"$K_{{Ex}}$ = {gain}/s", **style.LINES[line])
-        axes.plot(time, 1 - np.exp(-gain * time), **style.LINES["reference"])
+        label = r"$1 - \exp(-K_{Ex} t)$" if gain == 200 else None
+        axes.plot(time, 1 - np.exp(-gain * time), label=label, **style.LINES["reference"])
     axes.set(xlabel="Time [s]", ylabel=r"Observed $\sigma_i$ [N m]")
     axes.legend(loc="lower right")
     style.title(figure, r"The observer lags by 1/$K_{Ex}$")
@@ -199,10 +200,12 @@ def _draw_torques(recordings: Any, metrics: Any, config: Config) -> Any:
         run = recordings.get(case, recording)
         for joint, line in zip(sorted(busiest), ("book", "rival", "extra1")):
             axes.plot(run.time, run["observed"][:, joint], label=f"{JOINTS[joint]} observed", **style.LINES[line])
-            axes.plot(run.time, run["external"][:, joint], **style.LINES["reference"])
+            axes.plot(run.time, run["external"][:, joint], label="true", **style.LINES["reference"])
         axes.set_ylabel(r"$\tau_{Ex}$ [N m]")
         axes.set_title(f"model with {name}")
-    top.legend(loc="upper right")
+    handles, labels = top.get_legend_handles_labels()
+    once = dict(sorted(zip(labels, handles), key=lambda named: named[0] == "true"))
+    top.legend(once.values(), once, loc="upper right")
     bottom.plot(recording.time, 1e3 * recording["rcm_distance"], **style.LINES["book"])
     shown = (push.start - 1, push.start + push.duration + 2.1)
     bottom.set(xlabel="Time [s]", ylabel="$Dis_R$ [mm]", ylim=(0, 12), xlim=shown)
@@ -241,7 +244,10 @@ def _draw_effect(recordings: Any, metrics: Any, config: Config) -> Any:
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=3)
     found = metrics["plus"]
     peak, tip = 1e3 * found["rcm_peak"], 1e3 * found["error_peak"]
-    style.title(figure, f"30 N move the arm {peak:.1f} mm off the centre and the end point by {tip:.1f} mm")
+    style.title(
+        figure,
+        f"{np.abs(push.force).max():g} N move the arm {peak:.1f} mm off the centre and the end point by {tip:.1f} mm",
+    )
     return figure
 
 
@@ -272,7 +278,13 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    tables = {"T3.B": pd.DataFrame(rows)}
+    tables = {"T3.B": pd.DataFrame(rows).rename(columns=COLUMNS)}
     if "exact_plus" in recordings:
-        tables["T3.C"] = recordings["exact_plus"].frames["sweep"]
+        headers = {
+            "gain": "K_Ex [1/s]",
+            "clean_error": "error [-]",
+            "lag": "lag [s]",
+            "noisy_error": "error, noise [-]",
+        }
+        tables["T3.C"] = recordings["exact_plus"].frames["sweep"].rename(columns=headers)
     return tables

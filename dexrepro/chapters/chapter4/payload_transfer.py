@@ -115,11 +115,12 @@ def _draw_phases(recording: Recording, config: Config) -> Any:
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, 3, height=2.6)
+    shown = style.trimmed(recording.images)
     for k, (panel, where) in enumerate(zip(axes, ("near B", "near E", "from A to D")), 1):
-        panel.imshow(recording.images[f"phase{k}"])
+        panel.imshow(shown[f"phase{k}"])
         panel.set_axis_off()
         panel.set_title(f"phase {'I' * k}, {config.cases['reuse'].task.pictured[k - 1]:.1f} s: {where}")
-    axes[0].annotate("orange: A, B, C\ngreen: D, E, F", (0.02, 0.03), xycoords="axes fraction", size=7)
+    axes[0].annotate("orange: A, B, C; green: D, E, F", (0, -0.04), xycoords="axes fraction", size=7, va="top")
     style.title(figure, "The payload hangs from the gripper on a ball joint")
     return figure
 
@@ -145,7 +146,7 @@ def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
     for panel in axes[0]:
         style.band(panel, time, -limit, limit, zorder=-5)
         panel.set_ylim(-220, 220)
-    axes[0, 0].legend(loc="lower right")
+    style.legend_below(figure, {label: style.LINES[line] for _, label, line in shown})
     _draw_bars(figure, axes, metrics)
     reuse, fixed = metrics["reuse"]["rmse_mm"], metrics["rbf_medium"]["rmse_mm"]
     style.title(

@@ -138,8 +138,8 @@ def _draw_letters(cases: list[str], recordings: Mapping[str, Recording], metrics
 def _draw_picture(recording: Recording) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.plt.subplots(figsize=(style.ONE_COLUMN * 1.3, 3.1))
-    axes.imshow(recording.images["picture"])
+    figure, axes = style.plt.subplots(figsize=(style.ONE_COLUMN, 2.4))
+    axes.imshow(style.trimmed({"a": recording.images["picture"]})["a"])
     axes.set_axis_off()
     style.title(figure, "The simulated arm has written the letter a")
     return figure
@@ -148,7 +148,7 @@ def _draw_picture(recording: Recording) -> Any:
 def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, grid = style.subplots(3, 4, height=4.6, sharex=True)
+    figure, grid = style.subplots(3, 4, height=4.8, sharex=True)
     bound = config.bound
     for column, (case, (name, line)) in zip(grid.T, SHOWN.items()):
         recording = recordings[case]
@@ -175,6 +175,8 @@ def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
         axes.set_ylabel(text)
     for axes in grid[:, 1:].flat:
         axes.tick_params(labelleft=False)
+    joints = {"joint 1": "-", "joint 2": "--", "joint 3": ":"}
+    style.legend_below(figure, {name: {"color": style.REFERENCE, "linestyle": line} for name, line in joints.items()})
     share = metrics["letter_w"]["bound_use"] or 0.0
     style.title(
         figure, f"With the sign of the network corrected the errors use at most {100 * share:.0f} % of the bound"

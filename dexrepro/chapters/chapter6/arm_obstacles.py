@@ -25,8 +25,8 @@ from dexrepro.robots.inverse_kinematics import solve
 
 FIGURES = {
     "6.3": Figure(
-        "The scene from above: two old boxes (orange), the new one (blue), the learned path (dash-dotted) and the "
-        "constrained one (dashed). The book shows a photograph of the same arrangement.",
+        "The scene from above: two old boxes (orange), the new one (blue), the learned path (grey) and the "
+        "constrained one. The book shows a photograph of the same arrangement.",
         "The learned path runs through the new box, the constrained one round it.",
     ),
     "6.4": Figure(
@@ -195,16 +195,17 @@ def _draw_scene(original: Recording, constrained: Recording, config: Config) -> 
     image = constrained.images["top"]
     axes.imshow(image)
     for run, line in (
-        (original, {"color": "#C9A400", "linestyle": "-."}),
-        (constrained, {"color": "#D00000", "linestyle": "--"}),
+        (original, {**style.LINES["plain"], "label": "learned path"}),
+        (constrained, {**style.LINES["book"], "label": "constrained path"}),
     ):
         axes.plot(*_pixels(run["desired"], image.shape).T, **line)
+    figure.legend(loc="outside lower center", ncols=2)
     for name, text, shift in (("first", "old", -30), ("second", "old", 16), ("new", "new", -32)):
         spot = _pixels(np.array(config.boxes[name]), image.shape)
         axes.annotate(text, spot, xytext=(shift, -2), textcoords="offset points", fontsize=7)
     axes.set(xlim=(0, image.shape[1]), ylim=(image.shape[0], 0))
     axes.axis("off")
-    style.title(figure, "From above: learned path (yellow)\nand constrained path (red)")
+    style.title(figure, "The learned path crosses the new box, the constrained one goes round it")
     return figure
 
 

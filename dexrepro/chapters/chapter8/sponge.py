@@ -34,8 +34,8 @@ FIGURES = {
     ),
     "8.13": Figure(
         "Desired, virtual and actual path of the gripper in the simulated sponge experiment, with the learned law, "
-        "the regulator with the wrong model and the bound no method can beat; error to the virtual reference. The "
-        "book shows the same four panels.",
+        "the regulator with the wrong model and the bound no method can beat (true model, run for 10 s); error to the "
+        "virtual reference. The book shows the same four panels.",
         "Along z both laws stay on their virtual reference; the learned one compresses the sponge less at the end.",
     ),
     "8.14": Figure(
