@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ import jinja2
 import pandas as pd
 
 from dexrepro import __version__, chapters, study
-from dexrepro.config import compose_chapter, provenance, resolved_block
+from dexrepro.config import compose_chapter, provenance
 from dexrepro.experiment import (
     AFTER_CORRECTION,
     NOT_EVALUATED,
@@ -22,7 +23,7 @@ from dexrepro.experiment import (
     REPRODUCED,
     Experiment,
 )
-from dexrepro.report import equations
+from dexrepro.report import equations, parameters
 from dexrepro.report.style import file_stem
 from dexrepro.storage import read_json, whole_folder
 
@@ -54,15 +55,17 @@ class _Report:
     def write(self) -> None:
         book = [self._chapter(number) for number in chapters.numbers()]
         book = [chapter for chapter in book if chapter["experiments"]]
-        index, parameters = equations.index(), [p for c in book for e in c["experiments"] for p in e["parameters"]]
+        index = equations.index()
         for entry in index:
             text = f"Eq. ({entry['equation']}): {entry['name']}, {entry['file']}:{entry['line']}"
             self._searchable(text, f"equations.html#eq-{entry['equation']}")
+        self._search_parameters(book)
         common: dict[str, Any] = {"chapters": book, "provenance": self._provenance(book)}
         self._page("index", here="index", **common, **self._front(book))
         for chapter in book:
             self._page(f"chapter{chapter['number']}", "chapter", here=chapter["number"], chapter=chapter, **common)
-        self._page("equations", here="equations", equations=index, parameters=parameters, **common)
+        self._page("symbols", here="symbols", **common)
+        self._page("equations", here="equations", equations=index, **common)
         for name in ("style.css", "app.js"):
             shutil.copyfile(Path(__file__).parent / "templates" / name, self.folder / name)
         data = json.dumps(self.search, separators=(",", ":")).replace("<", "\\u003c")
@@ -74,6 +77,16 @@ class _Report:
 
     def _searchable(self, text: str, to: str) -> None:
         self.search.append({"text": text, "to": to})
+
+    def _search_parameters(self, book: list[dict[str, Any]]) -> None:
+        for chapter in book:
+            for item in chapter["symbols"]:
+                text = f"{item['symbol'].striptags()} ({item['plain']}), chapter {chapter['number']}: {item['key']}"
+                self._searchable(text, f"symbols.html#symbol-{chapter['number']}-{item['key']}")
+        for chapter in book:
+            for item in (row for experiment in chapter["experiments"] for row in experiment["parameters"]):
+                value = textwrap.shorten(str(item["value"]), 40)
+                self._searchable(f"{item['key']} = {value}", f"chapter{chapter['number']}.html#key-{item['key']}")
 
     # ------------------------------------------------------------------------------------------------- the chapters
 
@@ -88,7 +101,7 @@ class _Report:
         experiments = []
         for experiment in made:
             entry = self._experiment(number, experiment, place / experiment.name)
-            entry["parameters"] = _parameters(experiment.name, composed, origins)
+            entry["parameters"] = parameters.table(experiment.name, composed, origins)
             entry["references"] = [
                 {**vars(item), "ours": metrics.get(item.metric)}
                 for item in chapter.references
@@ -100,12 +113,14 @@ class _Report:
             evidence = [(name, metrics.get(name)) for name in item.evidence]
             errata.append({**vars(item), "evidence": evidence})
             self._searchable(f"{item.id} {item.equation}: {item.summary}", f"chapter{number}.html#{item.id}")
+        rows = [row for entry in experiments for row in entry["parameters"]]
         untestable = [claim.evaluate({}) for claim in chapter.claims if claim.not_testable]
         runs = [run for run in self._own_runs() if run["chapter"] == number]
         return {
             "number": number,
             "title": chapter.title,
             "experiments": experiments,
+            "symbols": parameters.index(composed, origins, rows),
             "errata": errata,
             "untestable": untestable,
             "runs": runs,
@@ -247,42 +262,6 @@ def _concerns(claimed: str, identifier: str) -> bool:
     """Whether a claim about "2.8a" or "2.5, 2.6" is about the figure "2.8"."""
     parts = [part.strip() for part in claimed.replace(";", ",").split(",")]
     return any(part == identifier or part.rstrip("abcdefgh") == identifier.rstrip("abcdefgh") for part in parts)
-
-
-def _parameters(experiment: str, composed: Mapping[str, Any], origins: Mapping[str, Any]) -> list[dict[str, Any]]:
-    rows = []
-    for key, value in _flat(resolved_block(composed, experiment), experiment):
-        origin = origins.get(key) or _origin_of_reference(key, composed, origins)
-        bounds = f"{origin.low:g} to {origin.high:g}" if origin and origin.low is not None else ""
-        rows.append(
-            {
-                "key": key,
-                "value": value,
-                "unit": origin.unit if origin else "",
-                "kind": origin.kind if origin else "",
-                "text": origin.text if origin else "",
-                "range": bounds,
-            }
-        )
-    return rows
-
-
-def _origin_of_reference(key: str, composed: Mapping[str, Any], origins: Mapping[str, Any]) -> Any:
-    node: Any = composed
-    for part in key.split("."):
-        node = node.get(part) if isinstance(node, Mapping) else None
-    text = node.strip("${} ") if isinstance(node, str) and node.startswith("${") else ""
-    return origins.get(text)
-
-
-def _flat(node: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
-    rows: list[tuple[str, Any]] = []
-    for key, value in node.items():
-        if isinstance(value, Mapping):
-            rows += _flat(value, f"{prefix}.{key}")
-        else:
-            rows.append((f"{prefix}.{key}", value))
-    return rows
 
 
 def _copied(source: Path, folder: Path, link: str) -> str:

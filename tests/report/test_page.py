@@ -61,6 +61,13 @@ def test_the_scoreboard_counts_the_verdicts(report: Path) -> None:
     assert re.findall(r"<td>(.*?)</td>", row) == ["2", "", "1", "", "", "0 of 0"]
 
 
+def test_a_symbol_leads_to_its_parameter_and_back(report: Path) -> None:
+    chapter, index = ((report / name).read_text() for name in ("chapter90.html", "symbols.html"))
+    assert '<a href="symbols.html#symbol-90-shared.rate"><i>λ</i><sub>1</sub></a>' in chapter
+    assert '<a href="chapter90.html#key-decay.rate">decay</a>' in index
+    assert "lambda_1" in (report / "search-index.js").read_text()
+
+
 def test_text_from_configurations_is_escaped(toy: Path) -> None:
     plans, _ = plan_chapter("90")
     plans[0].block["note"] = "<script>alert(1)</script>"
@@ -101,7 +108,7 @@ def test_in_a_real_browser(report: Path, tmp_path: Path) -> None:
       document.body.append(pre);
     }, 300));
     </script>"""
-    for name in ("index.html", "chapter90.html", "equations.html"):
+    for name in ("index.html", "chapter90.html", "symbols.html", "equations.html"):
         text = (report / name).read_text().replace('loading="lazy"', "").replace("<head>", f"<head>{probe}")
         (report / f"probe-{name}").write_text(text)
         flags = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking"

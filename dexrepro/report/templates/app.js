@@ -46,3 +46,11 @@ for (const link of document.querySelectorAll("a.enlarge")) {
   });
 }
 dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });
+
+function reveal() {
+  const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  for (let node = target; node; node = node.parentElement) if (node.tagName === "DETAILS") node.open = true;
+  target?.scrollIntoView();
+}
+window.addEventListener("hashchange", reveal);
+if (location.hash) reveal();
