@@ -380,7 +380,11 @@ def new_command(options: argparse.Namespace) -> int:
 
 
 def render_command(options: argparse.Namespace) -> int:
-    """``dexrepro render (FOLDER | chapter=N [only=EXPERIMENT]) [case=NAME] [format=gif|mp4]``."""
+    """``dexrepro render [FOLDER | chapter=N] [only=EXPERIMENT] [case=NAME] [format=gif|mp4]``.
+
+    Without a folder or an experiment: the film of every experiment that declares one and has a result, where it is
+    missing or older than its recording.
+    """
     from dexrepro import chapters
     from dexrepro.config import InputError
     from dexrepro.report import animation
@@ -395,10 +399,14 @@ def render_command(options: argparse.Namespace) -> int:
     for number in () if folders else numbers:
         for experiment in chapters.load(number).experiments:
             folder = results / f"chapter{number}" / experiment.name
-            if experiment.name in only or (not only and experiment.has("scene") and folder.exists()):
+            film = animation.film_of(folder, experiment)
+            outdated = film is not None and not animation.up_to_date(film, experiment)
+            if experiment.name in only or (not only and outdated):
                 folders.append(folder)
     for folder in folders:
         out.print(str(animation.render(folder, values.get("case"), kind)), markup=False)
+    if not folders:
+        out.print("nothing to render: every film of these results is up to date")
     return OK
 
 

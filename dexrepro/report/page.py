@@ -152,9 +152,10 @@ class _Report:
                 for identifier, title in experiment.tables.items()
                 if (place / "tables" / f"{identifier}.csv").exists()
             ],
-            "animations": [
-                {"name": path.stem, "path": _copied(path, target, f"files/{experiment.name}")}
+            "films": [
+                self._film(path, experiment, target)
                 for path in sorted(place.glob("animation/*.gif"))
+                if path.with_suffix(".png").exists()
             ],
             "files": files,
             "run": run,
@@ -163,6 +164,14 @@ class _Report:
                 f"Python {run['python']}; {run['machine']}; {run['wall']:.1f} s of one core{factor}"
             ),
         }
+
+    def _film(self, path: Path, experiment: Experiment, target: Path) -> dict[str, str]:
+        for suffix in (".gif", ".png"):
+            _copy(path.with_suffix(suffix), target / f"film_{path.stem}{suffix}")
+        film = experiment.film
+        caption = film.caption if film and film.case == path.stem else "The arms, from the recording."
+        link = f"files/{target.name}/film_{path.stem}"
+        return {"case": path.stem, "caption": caption, "gif": f"{link}.gif", "still": f"{link}.png"}
 
     def _figure(
         self, number: str, identifier: str, caption: str, alt: str, place: Path, target: Path, claims: list[Any]
@@ -262,11 +271,6 @@ def _concerns(claimed: str, identifier: str) -> bool:
     """Whether a claim about "2.8a" or "2.5, 2.6" is about the figure "2.8"."""
     parts = [part.strip() for part in claimed.replace(";", ",").split(",")]
     return any(part == identifier or part.rstrip("abcdefgh") == identifier.rstrip("abcdefgh") for part in parts)
-
-
-def _copied(source: Path, folder: Path, link: str) -> str:
-    _copy(source, folder / source.name)
-    return f"{link}/{source.name}"
 
 
 def _copy(source: Path, target: Path) -> None:

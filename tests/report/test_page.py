@@ -11,6 +11,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from dexrepro.report import equations, page
 from dexrepro.runner import plan_chapter, run_plans
@@ -22,6 +23,10 @@ BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil
 def report(toy: Path) -> Path:
     plans, _ = plan_chapter("90")
     run_plans(plans, workers=1, force=False)
+    films = Path("results/chapter90/decay/animation")
+    films.mkdir()
+    for name in ("plain.gif", "plain.png"):
+        Image.new("RGB", (80, 33), "white").save(films / name)
     return page.build(Path("results")).parent
 
 
@@ -66,6 +71,12 @@ def test_a_symbol_leads_to_its_parameter_and_back(report: Path) -> None:
     assert '<a href="symbols.html#symbol-90-shared.rate"><i>λ</i><sub>1</sub></a>' in chapter
     assert '<a href="chapter90.html#key-decay.rate">decay</a>' in index
     assert "lambda_1" in (report / "search-index.js").read_text()
+
+
+def test_a_film_is_a_still_that_leads_to_the_moving_picture(report: Path) -> None:
+    text = (report / "chapter90.html").read_text()
+    assert '<a href="files/decay/film_plain.gif"><img src="files/decay/film_plain.png"' in text
+    assert (report / "files/decay/film_plain.gif").exists()
 
 
 def test_text_from_configurations_is_escaped(toy: Path) -> None:
