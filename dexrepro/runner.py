@@ -31,6 +31,7 @@ import yaml
 
 from dexrepro import __version__, chapters
 from dexrepro.config import (
+    SETTINGS,
     InputError,
     check_types,
     compose_chapter,
@@ -146,27 +147,38 @@ def _plan(
     results: Path,
     perturbation: float,
 ) -> Plan:
-    cases, book = experiment_cases(config, name), experiment_cases(shipped, name)
-    for case, values in cases.items():
-        check_types(values, book.get(case, next(iter(book.values()))), name)
     seed = config["seed"]
     if not isinstance(seed, int):
         raise InputError(f"seed = {seed!r} is not allowed: it must be a whole number of 0 or greater")
-    block = resolved_block(config, name)
-    differs = differences(block, resolved_block(shipped, name))
-    differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
-    differs = differs or differences(cases, book)  # a shared value that only a case refers to
-    differs += differences({"seed": seed}, {"seed": shipped["seed"]})
+    cases, block = experiment_cases(config, name), resolved_block(config, name)
+    differs = [] if _as_shipped(config, shipped) else _differs(name, config, shipped, cases, block)
     folder = results / f"chapter{chapter}" / name
     if differs:
         folder = results / "runs" / f"{name}-{_digest([cases, seed])[:10]}"
-    jobs = []
+    jobs, code = [], [source_digest(chapter), [version(package) for package in NUMERICAL]]
     for case, values in cases.items():
         values = {**values, "perturbation": perturbation, "seed": seed, "case": case}
-        key = _digest([name, values, source_digest(chapter), [version(package) for package in NUMERICAL]])
+        key = _digest([name, values, *code])
         cached = results / ".cache" / name / f"{case}-{key[:16]}"
         jobs.append(Job(chapter, name, case, values, seed, str(cached), bool(config["gui"])))
     return Plan(chapter, name, block, jobs, folder, seed, differs)
+
+
+def _as_shipped(config: Mapping[str, Any], shipped: Mapping[str, Any]) -> bool:
+    return all(config.get(key) == shipped.get(key) for key in {*config, *shipped} - {*SETTINGS, "hydra"} | {"seed"})
+
+
+def _differs(
+    name: str, config: Mapping[str, Any], shipped: Mapping[str, Any], cases: Mapping[str, Any], block: Mapping[str, Any]
+) -> list[str]:
+    """In what an experiment differs from the book. Raises InputError where a text stands for a number."""
+    book = experiment_cases(shipped, name)
+    for case, values in cases.items():
+        check_types(values, book.get(case, next(iter(book.values()))), name)
+    differs = differences(block, resolved_block(shipped, name))
+    differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
+    differs = differs or differences(cases, book)  # a shared value that only a case refers to
+    return differs + differences({"seed": config["seed"]}, {"seed": shipped["seed"]})
 
 
 def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[Experiment]:

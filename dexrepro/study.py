@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import copy
 import json
+import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +21,16 @@ from scipy import stats
 
 from dexrepro import chapters
 from dexrepro.baselines import baseline_dir
-from dexrepro.config import InputError, Provenance, compose_chapter, experiment_cases, nearest, provenance
-from dexrepro.experiment import Metrics
+from dexrepro.config import (
+    InputError,
+    Provenance,
+    compose_chapter,
+    experiment_cases,
+    nearest,
+    provenance,
+    resolved_block,
+)
+from dexrepro.experiment import Claim, Config, Metrics
 from dexrepro.runner import available_cores, begin_worker, flat, generator, live, summarise
 from dexrepro.storage import finite, read_json, write_json
 
@@ -28,22 +38,27 @@ from dexrepro.storage import finite, read_json, write_json
 def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list[str]:
     """Names of the experiments a study is about. Raises InputError for an unknown claim."""
     loaded = chapters.load(chapter)
-    if claim is None:
-        return [experiment.name for experiment in loaded.experiments if not only or experiment.name in only]
     by_id = {item.id: item for item in loaded.claims if item.predicate}
+    if claim is None:
+        about = {item.experiment for item in by_id.values()}
+        return [e.name for e in loaded.experiments if e.name in about and (not only or e.name in only)]
     if claim not in by_id:
         raise InputError(f"unknown claim '{claim}' in chapter {chapter}: {nearest(claim, by_id)}")
     return [by_id[claim].experiment]
 
 
+_shipped = cache(compose_chapter)
+
+
+@cache
 def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
     """Parameters with a declared range that an experiment uses: its own, and the shared ones it refers to."""
-    composed = compose_chapter(chapter)
-    block = json.dumps(composed[experiment], default=str)
+    composed = _shipped(chapter)
+    referred = _references(composed, composed[experiment])
     found = {}
     for key, origin in provenance(chapter).items():
         own = key.startswith(f"{experiment}.") and ".cases." not in key
-        shared = key.startswith("shared.") and f"${{{key}}}" in block
+        shared = any(key == name or key.startswith(f"{name}.") for name in referred)
         value = _get(composed, key)
         scalar = isinstance(value, int | float) and not isinstance(value, bool)
         if origin.low is not None and scalar and (own or shared):
@@ -51,9 +66,20 @@ def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
     return found
 
 
+def _references(composed: Mapping[str, Any], node: Any) -> set[str]:
+    """Names a node refers to as ``${name}``, and those that these refer to in turn."""
+    found: set[str] = set()
+    todo = [node]
+    while todo:
+        names = set(re.findall(r"\$\{([\w.]+)\}", json.dumps(todo.pop(), default=str))) - found
+        found |= names
+        todo += [_get(composed, name) for name in names]
+    return found
+
+
 def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float], dict[str, Any]]:
-    """Sample number ``index``: the values drawn, and the configuration of every case under them."""
-    composed = copy.deepcopy(compose_chapter(chapter))
+    """Sample number ``index``: the values drawn, and under them the experiment's block with all its ``cases``."""
+    composed = copy.deepcopy(_shipped(chapter))
     rng = generator(index, experiment, "study")
     values: dict[str, float] = {}
     for key, origin in parameters(chapter, experiment).items():
@@ -65,32 +91,40 @@ def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float], d
         values[key] = value
         _set(composed, key, value)
     values["seed"] = int(rng.integers(1 << 16))
-    return values, experiment_cases(composed, experiment)
+    return values, {**resolved_block(composed, experiment), "cases": experiment_cases(composed, experiment)}
 
 
 def evaluate(chapter: str, experiment: str, index: int) -> dict[str, Any]:
-    """Simulate one sample and return its values and the margin of every claim (None where it failed)."""
-    values, cases = draw(chapter, experiment, index)
-    module = chapters.load(chapter).experiment(experiment)
-    start, error = time.perf_counter(), None
+    """Simulate one sample and return its values and the margin of every claim (None where a case of it failed)."""
+    start = time.perf_counter()
+    values, block = draw(chapter, experiment, index)
+    cases = block["cases"]
+    seed = int(values["seed"])
+    loaded = chapters.load(chapter)
+    definition, claims = loaded.experiment(experiment), loaded.claims_of(experiment)
+    errors: list[str] = []
     metrics: dict[str, Metrics] = {}
-    try:
-        for case, raw in cases.items():
-            config = live({**raw, "perturbation": 0.0, "seed": values["seed"], "case": case})
-            recording = module.module.simulate(
-                config, lambda purpose: generator(int(values["seed"]), experiment, purpose)
-            )
-            metrics[case] = module.module.measure(recording, config)
-        summarise(module, metrics, live({"cases": cases}))
-    except Exception as problem:
-        error = f"{type(problem).__name__}: {problem}"
+    for case in _cases_of(claims, cases):
+        try:
+            config = live({**cases[case], "perturbation": 0.0, "seed": seed, "case": case})
+            recording = definition.module.simulate(config, lambda purpose: generator(seed, experiment, purpose))
+            metrics[case] = definition.module.measure(recording, config)
+        except Exception as problem:
+            errors.append(f"{case}: {type(problem).__name__}: {problem}")
+    if len(metrics) == len(cases):
+        summarise(definition, metrics, Config.of(block))
     measured = finite(flat(experiment, metrics))
-    margins = {
-        claim.id: None if error or claim.predicate is None else claim.predicate.margin(measured)
-        for claim in chapters.load(chapter).claims_of(experiment)
-    }
+    margins = {claim.id: claim.predicate.margin(measured) for claim in claims if claim.predicate}
     wall = time.perf_counter() - start
-    return {"index": index, "values": values, "margins": margins, "error": error, "wall": wall}
+    return {"index": index, "values": values, "margins": margins, "error": "; ".join(errors) or None, "wall": wall}
+
+
+def _cases_of(claims: Sequence[Claim], cases: Mapping[str, Any]) -> list[str]:
+    """The cases that the claims are about: all as soon as a claim needs a number over several cases."""
+    parts = [name.split(".") for claim in claims if claim.predicate for name in claim.predicate.metrics]
+    if any(len(part) < 3 for part in parts):
+        return list(cases)
+    return [case for case in cases if any(part[1] == case for part in parts)]
 
 
 def run(

@@ -6,12 +6,15 @@ import pytest
 
 from dexrepro import chapters
 from dexrepro.config import (
+    InputError,
     Provenance,
+    _names,
     compose_chapter,
     config_dir,
     experiment_cases,
     leaves_with_comments,
     parse_provenance,
+    resolved_block,
 )
 
 CHAPTERS = chapters.numbers()
@@ -98,3 +101,28 @@ def test_the_parts_of_a_chapter_fit_together(chapter: str) -> None:
 def test_experiment_names_are_unique_in_the_book() -> None:
     names = [experiment.name for chapter in CHAPTERS for experiment in chapters.load(chapter).experiments]
     assert len(set(names)) == len(names)
+
+
+def test_interpolations_mean_what_omegaconf_says_they_mean() -> None:
+    from omegaconf import OmegaConf
+
+    composed = compose_chapter("7")
+    block = {key: value for key, value in composed["impedance_tracking"].items() if key != "cases"}
+    names = {**_names(composed), "impedance_tracking": block}
+    whole = OmegaConf.to_container(OmegaConf.create(names)["impedance_tracking"], resolve=True)
+    assert resolved_block(composed, "impedance_tracking") == whole
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [("${a.b}", 2), ("${c.b}", 2), ("${chain}", 2), ("x${a.b}", "x2"), ("${a}", {"b": 2}), ("${oc.select:a.z,5}", 5)],
+)
+def test_interpolations_of_every_kind(value: str, expected: object) -> None:
+    composed = {"a": {"b": 2}, "c": "${a}", "chain": "${c.b}", "e": {"value": value}}
+    assert resolved_block(composed, "e") == {"value": expected}
+
+
+@pytest.mark.parametrize(("value", "word"), [("${nowhere.x}", "nowhere"), ("${e.value}", "e")])
+def test_an_interpolation_that_leads_nowhere_is_refused(value: str, word: str) -> None:
+    with pytest.raises(InputError, match=word):
+        resolved_block({"e": {"value": value}}, "e")

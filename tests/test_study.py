@@ -8,6 +8,7 @@ import pytest
 
 from dexrepro import study
 from dexrepro.config import InputError
+from dexrepro.experiment import Claim, less
 from dexrepro.storage import read_json
 
 RESULTS = Path("results")
@@ -21,10 +22,33 @@ def folder(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_only_parameters_with_a_declared_range_are_varied(folder: Path) -> None:
     assert set(study.parameters("90", "decay")) == {"decay.start"}
-    values, cases = study.draw("90", "decay", 3)
+    values, block = study.draw("90", "decay", 3)
     assert 0.5 <= values["decay.start"] <= 2
-    assert all(case["start"] == values["decay.start"] for case in cases.values())
-    assert study.draw("90", "decay", 3) == (values, cases)
+    assert all(case["start"] == values["decay.start"] for case in block["cases"].values())
+    assert study.draw("90", "decay", 3) == (values, block)
+
+
+def test_shared_parameters_are_found_through_whole_blocks_and_chains() -> None:
+    composed = {"shared": {"arm": {"mass": 1.0, "length": "${shared.size}"}, "size": 2.0, "unused": 3.0}}
+    assert study._references(composed, {"arm": "${shared.arm}"}) == {"shared.arm", "shared.size"}
+
+
+def test_only_the_cases_of_claims_are_run(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    claims = study.chapters.load("90").claims_of("decay")
+    cases = study.draw("90", "decay", 0)[1]["cases"]
+    assert study._cases_of(claims, cases) == ["plain", "fast", "gain1", "gain2"]
+    over_all = Claim("C90.09", "90.10", "a number over several cases", less("decay.ratio", 9))
+    assert study._cases_of([*claims, over_all], cases) == list(cases)
+
+
+def test_a_case_that_fails_leaves_the_claims_of_the_others(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    values, block = study.draw("90", "decay", 0)
+    block["cases"]["gain2"]["fail"] = True
+    monkeypatch.setattr(study, "draw", lambda *_: (values, block))
+    sample = study.evaluate("90", "decay", 0)
+    assert sample["error"] == "gain2: ValueError: told to fail"
+    assert sample["margins"]["C90.01"] > 0
+    assert sample["margins"]["C90.03"] is None
 
 
 def test_a_study_counts_how_often_each_claim_holds_and_what_it_follows(folder: Path) -> None:

@@ -9,18 +9,18 @@ class PassiveImpedance:
     """Reference that obeys m a + b v = f_x - f_x,d (Sect. 2.4.1.3), by the second-order Runge-Kutta method.
 
     mass: m_pi [kg]. damping: b_pi [N s/m]. desired_force: [N]. dt: control period [s], over which the force is held.
-    Behind a partner of constant velocity v it keeps the force error b_pi v.
+    ``velocity`` is the reference's [m/s]. Behind a partner of constant velocity v it keeps the force error b_pi v.
     """
 
     def __init__(self, *, mass: Any, damping: Any, desired_force: Any, dt: float) -> None:
         self.mass, self.damping, self.desired_force, self.dt = mass, damping, desired_force, dt
 
     def reset(self, position: Any) -> None:
-        self._position, self._velocity = position, 0.0
+        self._position, self.velocity = position, 0.0
 
     def __call__(self, position: Any, force: Any) -> Any:
-        error, velocity = force - self.desired_force, self._velocity
+        error, velocity = force - self.desired_force, self.velocity
         middle = velocity + 0.5 * self.dt * (error - self.damping * velocity) / self.mass
         self._position = self._position + self.dt * middle
-        self._velocity = velocity + self.dt * (error - self.damping * middle) / self.mass
+        self.velocity = velocity + self.dt * (error - self.damping * middle) / self.mass
         return self._position

@@ -56,7 +56,7 @@ def _candidate(config: Config) -> Recording:
     for i in range(n):
         force = max(0.0, k * (partner[i] - x))
         rows[i] = (np.sum((inner.weights - best) ** 2), (inner.estimate - contact[i]) ** 2, force)
-        velocity = damper._velocity if config.compliant else 0.0
+        velocity = damper.velocity if config.compliant else 0.0
         rows[i, 0] = (rows[i, 0] + rows[i, 1]) / (2 * config.adaptation)
         rows[i, 0] += 0.5 * config.mass * velocity**2 + (force - config.desired_force) ** 2 / (2 * k)
         x = float(law(x, force, contact[i]) if config.ideal else law(x, force))

@@ -91,7 +91,7 @@ def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
         "estimated": [m["contact_peak"] or 0.0 for case, m in metrics.items() if not case.endswith("_plain")],
         "plain": [m["contact_peak"] or 0.0 for case, m in metrics.items() if case.endswith("_plain")],
     }
-    return {f"{name}_spread": float(np.ptp(values) / np.mean(values)) for name, values in peaks.items() if values}
+    return {f"{name}_spread": float(np.ptp(values) / np.mean(values)) for name, values in peaks.items() if any(values)}
 
 
 NAMES = {"muscle": "muscle", "low": "constant, smallest", "mean": "constant, mean", "high": "constant, largest"}
