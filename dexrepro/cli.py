@@ -414,6 +414,7 @@ def study_command(options: argparse.Namespace) -> int:
     """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=200] [hours=H]``."""
     from dexrepro import study
     from dexrepro.config import InputError
+    from dexrepro.report import studies
 
     numbers, results, only = _selected(options, ("claim", "samples", "hours"))
     values = dict(text.partition("=")[::2] for text in options.selection)
@@ -424,8 +425,10 @@ def study_command(options: argparse.Namespace) -> int:
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
             path = study.run(number, name, samples, results, workers=options.workers, hours=hours)
-            out.print(f"{name}: {path}", markup=False)
-            for claim, row in study.read_json(path)["claims"].items():
+            summary = study.read_json(path)
+            drawing = studies.save(summary, results / "study" / f"{name}.svg")
+            out.print(f"{name}: {path}, drawn in {drawing}", markup=False)
+            for claim, row in summary["claims"].items():
                 interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
                 most = f", follows {row['parameter']} most" if row["parameter"] else ""
                 out.print(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}){most}", markup=False)

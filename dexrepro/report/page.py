@@ -23,7 +23,7 @@ from dexrepro.experiment import (
     REPRODUCED,
     Experiment,
 )
-from dexrepro.report import equations, parameters
+from dexrepro.report import equations, parameters, studies
 from dexrepro.report.style import file_stem
 from dexrepro.storage import read_json, whole_folder
 
@@ -51,6 +51,7 @@ class _Report:
         loader = jinja2.PackageLoader("dexrepro.report", "templates")
         self.templates = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True)
         self.search: list[dict[str, str]] = []
+        self.studies = {item["experiment"]: item for item in study.stored()}
 
     def write(self) -> None:
         book = [self._chapter(number) for number in chapters.numbers()]
@@ -157,6 +158,7 @@ class _Report:
                 for path in sorted(place.glob("animation/*.gif"))
                 if path.with_suffix(".png").exists()
             ],
+            "study": self._study(experiment.name, target),
             "files": files,
             "run": run,
             "provenance": (
@@ -172,6 +174,13 @@ class _Report:
         caption = film.caption if film and film.case == path.stem else "The arms, from the recording."
         link = f"files/{target.name}/film_{path.stem}"
         return {"case": path.stem, "caption": caption, "gif": f"{link}.gif", "still": f"{link}.png"}
+
+    def _study(self, experiment: str, target: Path) -> dict[str, Any] | None:
+        found = self.studies.get(experiment)
+        if not found or not found["claims"]:
+            return None
+        path = studies.save(found, target / "study.svg")
+        return {**found, "svg": f"files/{target.name}/{path.name}", "finding": studies.finding(found)}
 
     def _figure(
         self, number: str, identifier: str, caption: str, alt: str, place: Path, target: Path, claims: list[Any]
@@ -228,7 +237,13 @@ class _Report:
             "totals": totals,
             "gallery": [figure for c in book for figure in _in_book_order(c)],
             "errata": errata,
-            "studies": [{"claim": claim, **row} for item in study.stored() for claim, row in item["claims"].items()],
+            "studies": [
+                {"claim": claim, "chapter": chapter["number"], **experiment["study"]["claims"][claim["id"]]}
+                for chapter in book
+                for experiment in chapter["experiments"]
+                for claim in experiment["claims"]
+                if experiment["study"] and claim["id"] in experiment["study"]["claims"]
+            ],
         }
 
     def _provenance(self, book: list[dict[str, Any]]) -> str:
