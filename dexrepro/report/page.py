@@ -204,9 +204,15 @@ class _Report:
         _copy(path, target / path.name)
         (target / f"{identifier}.tex").write_text(frame.to_latex(index=False, float_format="%.4g", escape=True))
         self._searchable(f"Table {identifier}: {title}", f"chapter{number}.html#tab-{identifier}")
-        html = frame.to_html(index=False, float_format=lambda x: f"{x:.4g}", na_rep="–", border=0)
         base = f"files/{target.name}/{identifier}"
-        return {"id": identifier, "title": title, "html": html, "csv": f"{base}.csv", "tex": f"{base}.tex"}
+        return {
+            "id": identifier,
+            "title": title,
+            "columns": [(name, frame[name].dtype.kind in "if") for name in frame],
+            "rows": [[_cell(value) for value in row] for row in frame.astype(object).to_numpy().tolist()],
+            "csv": f"{base}.csv",
+            "tex": f"{base}.tex",
+        }
 
     def _own_runs(self) -> list[dict[str, Any]]:
         runs = []
@@ -286,6 +292,13 @@ def _concerns(claimed: str, identifier: str) -> bool:
     """Whether a claim about "2.8a" or "2.5, 2.6" is about the figure "2.8"."""
     parts = [part.strip() for part in claimed.replace(";", ",").split(",")]
     return any(part == identifier or part.rstrip("abcdefgh") == identifier.rstrip("abcdefgh") for part in parts)
+
+
+def _cell(value: Any) -> str:
+    """A table's entry, with a minus sign at which no line is broken."""
+    if pd.isna(value):
+        return "–"
+    return f"{value:.4g}".replace("-", "\u2212") if isinstance(value, float) else str(value)
 
 
 def _copy(source: Path, target: Path) -> None:

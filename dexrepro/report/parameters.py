@@ -22,16 +22,17 @@ def table(experiment: str, composed: Mapping[str, Any], origins: Mapping[str, Pr
 def index(
     composed: Mapping[str, Any], origins: Mapping[str, Provenance], rows: Iterable[Mapping[str, Any]]
 ) -> list[dict[str, Any]]:
-    """A chapter's symbols: the key that sets each, and which of ``rows`` follows it in each experiment."""
+    """A chapter's symbols in order: the key that sets each, and which of ``rows`` follows it in each experiment."""
     used: dict[str, dict[str, str]] = {}
     for row in rows:
         if row["home"]:
             used.setdefault(row["home"], {}).setdefault(row["key"].partition(".")[0], row["key"])
-    return [
+    found = [
         {"key": key, "value": _get(composed, key), "used": used.get(key, {}), **_shown(origin)}
         for key, origin in origins.items()
         if origin.symbol
     ]
+    return sorted(found, key=lambda entry: (entry["plain"].lower(), entry["plain"], not entry["used"]))
 
 
 def _shown(origin: Provenance | None) -> dict[str, Any]:
