@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import textwrap
 from collections.abc import Mapping
@@ -28,6 +29,7 @@ from dexrepro.report.style import file_stem
 from dexrepro.storage import read_json, whole_folder
 
 VERDICTS = (REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED, NOT_TESTABLE)
+SCALE = 1.7  # pixels a point of a figure
 KINDS = {
     "error": "Inconsistent with the book's own equations: derived, with measured evidence.",
     "gap": "Something an implementation needs is not printed.",
@@ -195,6 +197,7 @@ class _Report:
             "caption": caption,
             "alt": alt or caption,
             "svg": f"files/{target.name}/{stem}.svg",
+            "width": _width(target / f"{stem}.svg"),
             "png": f"files/{target.name}/{stem}.png",
             "claims": [claim for claim in claims if _concerns(claim["figure"], identifier)],
         }
@@ -289,9 +292,16 @@ def _in_book_order(chapter: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def _concerns(claimed: str, identifier: str) -> bool:
-    """Whether a claim about "2.8a" or "2.5, 2.6" is about the figure "2.8"."""
+    """Whether a claim about "2.8a" or "2.8, 2.9" is about the figure "2.8", and one about "2.8" about "2.8a"."""
     parts = [part.strip() for part in claimed.replace(";", ",").split(",")]
-    return any(part == identifier or part.rstrip("abcdefgh") == identifier.rstrip("abcdefgh") for part in parts)
+    panels = "abcdefgh"
+    return any(identifier in (part, part.rstrip(panels)) or identifier.rstrip(panels) == part for part in parts)
+
+
+def _width(svg: Path) -> int:
+    """How wide a figure is shown [pixels], so that its letters have one size whether it has one column or two."""
+    found = re.search(r'<svg[^>]*? width="([\d.]+)pt"', svg.read_text()[:2000])
+    return round(SCALE * float(found[1])) if found else 800
 
 
 def _cell(value: Any) -> str:

@@ -66,6 +66,20 @@ def test_the_scoreboard_counts_the_verdicts(report: Path) -> None:
     assert re.findall(r"<td>(.*?)</td>", row) == ["2", "", "1", "", "", "0 of 0"]
 
 
+@pytest.mark.parametrize(
+    ("claimed", "figure", "expected"),
+    [
+        ("2.8a", "2.8", True),
+        ("2.8", "2.8a", True),
+        ("2.5, 2.8", "2.8", True),
+        ("2.8a", "2.8b", False),
+        ("2.8", "2.81", False),
+    ],
+)
+def test_a_claim_stands_beside_the_figures_it_is_about(claimed: str, figure: str, expected: bool) -> None:
+    assert page._concerns(claimed, figure) is expected
+
+
 def test_a_symbol_leads_to_its_parameter_and_back(report: Path) -> None:
     chapter, index = ((report / name).read_text() for name in ("chapter90.html", "symbols.html"))
     assert '<a href="symbols.html#symbol-90-shared.rate"><i>λ</i><sub>1</sub></a>' in chapter
