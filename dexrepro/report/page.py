@@ -13,6 +13,7 @@ from typing import Any
 
 import jinja2
 import pandas as pd
+from markupsafe import Markup
 
 from dexrepro import __version__, chapters, study
 from dexrepro.config import compose_chapter, provenance
@@ -24,7 +25,7 @@ from dexrepro.experiment import (
     REPRODUCED,
     Experiment,
 )
-from dexrepro.report import equations, parameters, studies
+from dexrepro.report import equations, parameters, studies, symbols
 from dexrepro.report.style import file_stem
 from dexrepro.storage import read_json, whole_folder
 
@@ -52,6 +53,7 @@ class _Report:
         self.results, self.folder = results, folder
         loader = jinja2.PackageLoader("dexrepro.report", "templates")
         self.templates = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True)
+        self.templates.filters["breakable"] = _breakable
         self.search: list[dict[str, str]] = []
         self.studies = {item["experiment"]: item for item in study.stored()}
 
@@ -84,7 +86,7 @@ class _Report:
     def _search_parameters(self, book: list[dict[str, Any]]) -> None:
         for chapter in book:
             for item in chapter["symbols"]:
-                text = f"{item['symbol'].striptags()} ({item['plain']}), chapter {chapter['number']}: {item['key']}"
+                text = f"{symbols.text(item['plain'])}, chapter {chapter['number']}: {item['key']}"
                 self._searchable(text, f"symbols.html#symbol-{chapter['number']}-{item['key']}")
         for chapter in book:
             for item in (row for experiment in chapter["experiments"] for row in experiment["parameters"]):
@@ -296,6 +298,11 @@ def _concerns(claimed: str, identifier: str) -> bool:
     parts = [part.strip() for part in claimed.replace(";", ",").split(",")]
     panels = "abcdefgh"
     return any(identifier in (part, part.rstrip(panels)) or identifier.rstrip(panels) == part for part in parts)
+
+
+def _breakable(name: str) -> Markup:
+    """A dotted name that may be broken between its parts, and only there."""
+    return Markup("<wbr>").join(re.split(r"(?<=[._=,])(?=\w)", name))
 
 
 def _width(svg: Path) -> int:

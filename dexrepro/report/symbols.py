@@ -34,6 +34,12 @@ def html(symbol: str) -> Markup:
     return Markup("".join(parts))
 
 
+def text(symbol: str) -> str:
+    """For the search: Greek letters, and the words they are typed as where these differ."""
+    greek = re.sub("[A-Za-z]+", lambda match: _letter(match[0]), symbol)
+    return symbol if greek == symbol else f"{greek} ({symbol})"
+
+
 def _letter(word: str) -> str:
     if word in _GREEK:
         return _GREEK[word]

@@ -47,3 +47,8 @@ def test_parameters_of_a_block_that_is_shared_whole_keep_their_origin() -> None:
 def test_every_chapter_names_its_symbols(chapter: str) -> None:
     named = [origin.symbol for origin in provenance(chapter).values() if origin.symbol]
     assert len(named) >= 20
+
+
+def test_a_symbol_is_found_by_its_letter_and_by_the_word_for_it() -> None:
+    assert symbols.text("1/gamma_1") == "1/γ_1 (1/gamma_1)"
+    assert symbols.text("k_o") == "k_o"
