@@ -396,17 +396,21 @@ def render_command(options: argparse.Namespace) -> int:
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
         raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
+    films = []
     for number in () if folders else numbers:
         for experiment in chapters.load(number).experiments:
             folder = results / f"chapter{number}" / experiment.name
-            film = animation.film_of(folder, experiment)
+            if film := animation.film_of(folder, experiment):
+                films.append(film)
             outdated = film is not None and not animation.up_to_date(film, experiment)
             if experiment.name in only or (not only and outdated):
                 folders.append(folder)
+    if not folders and not films:
+        raise InputError(f"no result in {results} has a film; run first: dexrepro run")
     for folder in folders:
         out.print(str(animation.render(folder, values.get("case"), kind)), markup=False)
     if not folders:
-        out.print("nothing to render: every film of these results is up to date")
+        out.print(f"nothing to render: {len(films)} films are up to date")
     return OK
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
-from dexrepro import study
+from dexrepro import cli, study
 from dexrepro.report import page, studies
 from dexrepro.runner import plan_chapter, run_plans
 from dexrepro.storage import write_json
@@ -49,3 +50,13 @@ def test_the_report_shows_stored_studies(summary: dict, toy: Path, monkeypatch: 
     assert "follows most" in (folder / "files/decay/study.svg").read_text()
     assert 'src="files/decay/study.svg"' in (folder / "chapter90.html").read_text()
     assert "<td>50 %</td><td>30–70 %</td> <td>20</td>" in " ".join((folder / "index.html").read_text().split())
+
+
+def test_the_command_says_where_the_drawing_is(
+    toy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(study, "baseline_dir", lambda: toy / "baselines")
+    monkeypatch.setattr(cli, "out", Console(width=200, highlight=False))
+    assert cli.main(["study", "chapter=90", "samples=2", "workers=1"]) == 0
+    assert "drawn in results/study/decay.svg" in capsys.readouterr().out
+    assert (toy / "results/study/decay.svg").exists()
