@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import gc
 import hashlib
 import importlib.util
 import json
@@ -128,6 +129,8 @@ def plan_chapter(
         raise InputError(f"unknown chapter '{chapter}'; chapters: {', '.join(chapters.numbers())}")
     config = composed if composed is not None else compose_chapter(chapter, overrides, extra_dir)
     shipped = compose_chapter(chapter)
+    if config["gui"]:
+        _require_display()
     results = writable(Path(config["results"]))
     plans, skipped = [], {}
     for experiment in select(chapter, config["only"], config["figure"]):
@@ -137,6 +140,15 @@ def plan_chapter(
             continue
         plans.append(_plan(chapter, experiment.name, config, shipped, results, perturbation))
     return plans, skipped
+
+
+def _require_display() -> None:
+    from dexrepro.physics.loading import can_open_window
+
+    if not can_open_window():
+        shown = os.environ.get("DISPLAY")
+        why = f"DISPLAY = {shown} cannot be opened" if shown else "DISPLAY is not set"
+        raise InputError(f"gui = true is not allowed: it needs a display, and there is none ({why})")
 
 
 def _plan(
@@ -442,6 +454,8 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     if not waiting:
         return outcome
     by_name = {plan.experiment: plan for plan in plans}
+    # An experiment of few cases has long ones: they begin, and the short ones of the others fill the gaps at the end.
+    todo.sort(key=lambda job: len(by_name[job.experiment].jobs))
     with _pool(workers or available_cores(), progress, in_process=any(job.gui for job in todo)) as submit:
         pending: dict[Future[Any], Job | Plan] = {submit(execute, job): job for job in todo}
         pending |= {submit(assemble, by_name[name]): by_name[name] for name, cases in waiting.items() if not cases}
@@ -540,6 +554,8 @@ def begin_worker(queue: Any) -> None:
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)
     threadpool_limits(1)
+    gc.freeze()  # what is imported stays; without this the collector walks all of it again and again
+    gc.set_threshold(20_000)
     if queue is not None:
         Simulation.report = staticmethod(lambda simulated, duration: queue.put((os.getpid(), simulated, duration)))
 

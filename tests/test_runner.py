@@ -155,3 +155,10 @@ def test_the_configuration_on_disk_is_resolved(toy: Path) -> None:
     text = (toy / "results/chapter90/decay/config.yaml").read_text()
     assert "${" not in text
     assert json.loads((toy / "results/chapter90/decay/run.json").read_text())["differs"] == []
+
+
+def test_a_window_without_a_display_is_refused_before_anything_runs(toy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DISPLAY", ":7777")
+    with pytest.raises(InputError, match=r"gui = true .* needs a display, and there is none \(DISPLAY = :7777"):
+        run("gui=true")
+    assert not list(toy.rglob("*.json"))

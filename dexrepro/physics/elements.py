@@ -203,7 +203,7 @@ class JointLoad:
 
     def bind(self, world: Ends) -> Callable[[float], None]:
         arm, law = world.arm(self._arm), self._law
-        return lambda time: arm.add_load(law(time, arm.q, arm.dq))
+        return lambda time: arm.add_load(law(time, list(arm.q), list(arm.dq)))
 
     def channels(self) -> dict[str, float]:
         return {}

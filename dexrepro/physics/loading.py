@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import sys
 import tempfile
@@ -16,6 +17,21 @@ from dexrepro.robots.arm import Arm
 
 class LoadingError(RuntimeError):
     """The physics engine complained about, or changed, the description it was given."""
+
+
+def can_open_window() -> bool:
+    """Whether there is a display; the engine ends the whole process where it finds none."""
+    if not sys.platform.startswith("linux"):
+        return True
+    try:
+        x11 = ctypes.CDLL("libX11.so.6")
+    except OSError:
+        return False
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    display = x11.XOpenDisplay(None)
+    if display:
+        x11.XCloseDisplay(ctypes.c_void_p(display))
+    return bool(display)
 
 
 def connect(gui: bool = False) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as wall
+from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -31,23 +32,18 @@ class Diverged(RuntimeError):
 
 
 class Recorder:
-    """Rows of numbers written into one array that is made beforehand, turned into named channels at the end."""
+    """Rows of numbers, one after another, turned into named channels at the end."""
 
-    def __init__(self, rows: int) -> None:
-        self._rows, self._count = rows, 0
-        self._buffer: NDArray[np.float64] | None = None
+    def __init__(self) -> None:
+        self._numbers, self._rows = array("d"), 0
 
     def write(self, row: list[float]) -> None:
-        if self._buffer is None:
-            self._buffer = np.empty((self._rows, len(row)))
-        self._buffer[self._count] = row
-        self._count += 1
+        self._numbers.extend(row)
+        self._rows += 1
 
     def series(self, channels: Sequence[tuple[str, int]]) -> dict[str, NDArray[Any]]:
         """Channels in the order of the rows; a width of 0 stands for a single number: (samples,), else (samples, k)."""
-        rows = np.empty((0, sum(max(width, 1) for _, width in channels)))
-        if self._buffer is not None:
-            rows = self._buffer[: self._count]
+        rows = np.array(self._numbers).reshape(self._rows, sum(max(width, 1) for _, width in channels))
         result, start = {}, 0
         for name, width in channels:
             result[name] = rows[:, start : start + width].copy() if width else rows[:, start].copy()
@@ -57,7 +53,7 @@ class Recorder:
 
 @dataclass
 class Probes:
-    """Functions without arguments whose values, numbers or arrays of one shape, become channels."""
+    """Functions without arguments whose values, numbers, tuples of them or arrays of one shape, become channels."""
 
     functions: Mapping[str, Callable[[], Any]]
     channels: list[tuple[str, int]] = field(default_factory=list)
@@ -71,6 +67,8 @@ class Probes:
         for value in results:
             if isinstance(value, (float, int)):
                 row.append(value)
+            elif isinstance(value, tuple):
+                row.extend(value)
             else:
                 row.extend(np.ravel(value).tolist())
         return row
@@ -93,7 +91,7 @@ def run(
     every = 1 if control_period is None else round(control_period / step)
     if every < 1 or abs(every * step - (control_period or step)) > 1e-9:
         raise ValueError(f"the control period {control_period} s is no multiple of the physics step {step} s")
-    scene = _Scene(world, controllers, probes, every * step, -(-steps // record_every))
+    scene = _Scene(world, controllers, probes, every * step)
     pending = sorted(((round((at - start) / step), action) for at, action in events), key=lambda item: item[0])
     status, done, clock = "finished", 0, _Clock(duration, world.gui)
     for k in range(steps):
@@ -147,7 +145,6 @@ class _Scene:
         controllers: Mapping[str, Controller],
         probes: Mapping[str, Callable[[], Any]],
         period: float,
-        rows: int,
     ) -> None:
         unknown = set(controllers) - set(world.arms)
         if unknown:
@@ -161,14 +158,14 @@ class _Scene:
         self._bodies = list(world.moving.values())
         self._elements = list(world.elements)
         self._forces = [element.bind(world) for element in self._elements]
-        self._probes, self._recorder = Probes(probes), Recorder(rows)
+        self._probes, self._recorder = Probes(probes), Recorder()
 
     def read(self, now: float) -> str:
         """Take the state from the engine; the text says which arm diverged, if one did."""
         for arm in self._arms:
             arm.read()
             # A sum is cheap and is not a number if any of its terms is not.
-            if not sum(map(abs, arm.dq)) + sum(map(abs, arm.q)) < GUARD:
+            if not sum(map(abs, arm.q + arm.dq)) < GUARD:
                 return _diverged(arm, now)
         for body in self._bodies:
             body.read()
@@ -211,7 +208,7 @@ class _Scene:
             row += arm.torque
             row += (arm.x, arm.y, arm.z, arm.fx, arm.fy, arm.fz)
             if arm.force_channel is not None:
-                row += arm.sense.force.tolist()
+                row += arm.sense.felt
         for body in self._bodies:
             row += (body.x, body.y, body.z, *body.orientation)
         for element in self._elements:
@@ -233,10 +230,13 @@ class _Scene:
 
 
 def _diverged(arm: SimulatedArm, now: float) -> str:
-    if max(map(abs, arm.q)) > max(map(abs, arm.dq)):
-        values, what, unit = arm.q, "angle", "rad"
+    """Names the quantity that makes up most of the sum, and its joint; what is not a number exceeds everything."""
+    sizes = [[abs(value) if abs(value) < np.inf else np.inf for value in values] for values in (arm.q, arm.dq)]
+    angles, rates = sizes
+    if sum(angles) > sum(rates):
+        values, size, what, unit = arm.q, angles, "angle", "rad"
     else:
-        values, what, unit = arm.dq, "velocity", "rad/s"
-    worst = max(range(arm.dof), key=lambda i: abs(values[i]) if abs(values[i]) < np.inf else np.inf)
+        values, size, what, unit = arm.dq, rates, "velocity", "rad/s"
+    worst = size.index(max(size))
     joint = arm.arm.joints[worst].name
     return f"diverged at {now:.4g} s: {what} of joint '{joint}' of arm '{arm.name}' is {values[worst]:.4g} {unit}"

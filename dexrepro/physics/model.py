@@ -10,7 +10,7 @@ import pybullet as bullet
 from numpy.typing import NDArray
 
 from dexrepro.physics.loading import connect, load_arm
-from dexrepro.physics.plant import EndPoint
+from dexrepro.physics.plant import EndPoint, rotated
 from dexrepro.robots.arm import Arm
 
 Array = NDArray[np.float64]
@@ -81,13 +81,23 @@ class RigidBodyModel:
         )
         return np.array(linear + angular)
 
+    def tip_torque(self, q: Array, force: Sequence[float]) -> Array:
+        """Joint torques J^T F (n,) [N m] of a force (x, y, z) [N] on the end point."""
+        linear, _ = bullet.calculateJacobian(
+            self._body, self._end.link, self._end.for_jacobian, _list(q), self._zeros, self._zeros,
+            physicsClientId=self._client,
+        )  # fmt: skip
+        fx, fy, fz = force
+        return np.array([fx * x + fy * y + fz * z for x, y, z in zip(*linear)])
+
     def forward(self, q: Array) -> tuple[Array, Array]:
         """Position (3,) [m] and rotation (3, 3) of the end point in the world frame."""
         angles = [[angle] for angle in _list(q)]
         bullet.resetJointStatesMultiDof(self._body, self._indices, angles, physicsClientId=self._client)
         state = bullet.getLinkState(self._body, self._end.link, 0, 1, physicsClientId=self._client)
         rotation = np.array(bullet.getMatrixFromQuaternion(state[1])).reshape(3, 3)
-        return np.array(state[0]) + rotation @ self._end.from_com, rotation @ self._end.rotation
+        (x, y, z), (a, b, c) = state[0], rotated(state[1], self._end.from_com)
+        return np.array((x + a, y + b, z + c)), rotation @ self._end.rotation
 
 
 def _list(values: Array) -> list[float]:

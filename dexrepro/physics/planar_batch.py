@@ -57,6 +57,7 @@ class PlanarPairs:
         links = self._links
         rest = force if compensated is None else force - compensated
         if rest.any():
-            torque = torque + np.array(self.chain.tip_torque(self.position, np.stack((-rest, rest), axis=1), links))
+            pair = np.array((-rest[0], rest[0])), np.array((-rest[1], rest[1]))
+            torque = torque + np.array(self.chain.tip_torque(self.position, pair, links))
         self.velocity += self.dt * np.array(self.chain.acceleration(self.position, self.velocity, torque, links))
         self.position += self.dt * self.velocity

@@ -6,7 +6,8 @@ world frame, and ``push(fx, fy, fz)`` [N]. Plain floats: at 1 kHz small arrays c
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from operator import add
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -63,17 +64,30 @@ class Sense:
     """What one arm may know at an instant; nothing of its partner.
 
     time [s]; position, velocity: joint angles and rates as measured, shape (n,) [rad, rad/s]; force: the force on its
-    end point as its sensor reports it, shape (3,), world frame [N]. The arrays are new at every instant.
+    end point as its sensor reports it, shape (3,), world frame [N]. The arrays are new at every access; ``angles``,
+    ``rates`` and ``felt`` are the same as plain floats, for laws quicker without arrays.
     """
 
-    __slots__ = ("_plant", "force", "position", "time", "velocity")
+    __slots__ = ("_plant", "angles", "felt", "rates", "time")
 
     def __init__(self, plant: SimulatedArm) -> None:
         self._plant = plant
         self.time = 0.0
-        self.position = np.zeros(plant.dof)
-        self.velocity = np.zeros(plant.dof)
-        self.force = np.zeros(3)
+        self.angles: Sequence[float] = (0.0,) * plant.dof
+        self.rates: Sequence[float] = (0.0,) * plant.dof
+        self.felt: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        return np.array(self.angles)
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        return np.array(self.rates)
+
+    @property
+    def force(self) -> NDArray[np.float64]:
+        return np.array(self.felt)
 
     @property
     def tip(self) -> NDArray[np.float64]:
@@ -114,7 +128,7 @@ class SimulatedArm(Point):
         self.feels_contact = False
         self._indices = list(range(arm.dof))
         self._zeros = [0.0] * arm.dof
-        self.limits = arm.effort if saturate and np.isfinite(arm.effort).any() else None
+        self.limits: list[float] | None = arm.effort.tolist() if saturate and np.isfinite(arm.effort).any() else None
         self._sensor, self._rng = sensor, rng
         self.force_channel: ForceChannel | None = None
         self.joint_channel: JointChannel | None = None
@@ -123,8 +137,8 @@ class SimulatedArm(Point):
         self._levers: list[tuple[float, float]] = []
         self.z = self._planar.height if self._planar else 0.0
         self.load = self._zeros
-        self.q: list[float] = []
-        self.dq: list[float] = []
+        self.q: tuple[float, ...] = ()
+        self.dq: tuple[float, ...] = ()
         self.torque: Any = self._zeros
         self.fx = self.fy = self.fz = 0.0
         self._located = False
@@ -148,8 +162,7 @@ class SimulatedArm(Point):
     def read(self) -> None:
         """Take the joint state from the engine and forget last step's forces."""
         states = bullet.getJointStates(self.body, self._indices, physicsClientId=self.client)
-        self.q = [state[0] for state in states]
-        self.dq = [state[1] for state in states]
+        self.q, self.dq, _, _ = zip(*states)
         self._located = False
         self.fx = self.fy = self.fz = 0.0
         self.load = self._zeros
@@ -171,7 +184,7 @@ class SimulatedArm(Point):
             self.vx, self.vy = vx, vy
             return
         state = bullet.getLinkState(self.body, self.end.link, 1, 1, physicsClientId=self.client)
-        (cx, cy, cz), (rx, ry, rz) = state[0], _rotated(state[1], self.end.from_com)
+        (cx, cy, cz), (rx, ry, rz) = state[0], rotated(state[1], self.end.from_com)
         (ux, uy, uz), (ox, oy, oz) = state[6], state[7]
         self.x, self.y, self.z = cx + rx, cy + ry, cz + rz
         self.vx, self.vy, self.vz = ux + oy * rz - oz * ry, uy + oz * rx - ox * rz, uz + ox * ry - oy * rx
@@ -181,17 +194,13 @@ class SimulatedArm(Point):
         self.fx += fx
         self.fy += fy
         self.fz += fz
-        self._act(fx, fy, fz)
-
-    def push_unsensed(self, fx: float, fy: float, fz: float) -> None:
-        """Add a force on the end point [N] that the force sensor does not see."""
-        self._act(fx, fy, fz)
+        self.push_unsensed(fx, fy, fz)
 
     def push_link(self, link: str, point: tuple[float, float, float], force: tuple[float, float, float]) -> None:
         """Add a force [N], world frame, at a point of a link frame [m]."""
         index = self.links.index(link)
         state = bullet.getLinkState(self.body, index, 0, 1, physicsClientId=self.client)
-        place = [a + b for a, b in zip(state[4], _rotated(state[5], point), strict=True)]
+        place = [a + b for a, b in zip(state[4], rotated(state[5], point), strict=True)]
         bullet.applyExternalForce(self.body, index, force, place, bullet.WORLD_FRAME, physicsClientId=self.client)
 
     def add_load(self, torque: Any) -> None:
@@ -203,29 +212,30 @@ class SimulatedArm(Point):
         sense = self.sense
         sense.time = time
         if self.joint_channel is None:
-            sense.position = np.array(self.q)
-            sense.velocity = np.array(self.dq)
+            sense.angles, sense.rates = self.q, self.dq
         elif sample:
-            sense.position, sense.velocity = self.joint_channel(np.array(self.q), np.array(self.dq))
+            position, velocity = self.joint_channel(np.array(self.q), np.array(self.dq))
+            sense.angles, sense.rates = position.tolist(), velocity.tolist()
         if self.force_channel is None:
-            sense.force = np.array((self.fx, self.fy, self.fz))
+            sense.felt = self.fx, self.fy, self.fz
         elif sample:
-            sense.force = self.force_channel(np.array((self.fx, self.fy, self.fz)))
+            sense.felt = self.force_channel((self.fx, self.fy, self.fz))
         return sense
 
     def command(self, torque: Any, damping: Any, step: float) -> None:
         """Set this step's joint torque [N m], with damping [N m s/rad] applied implicitly, within the effort limits."""
         if damping is not None:
             torque = self._damped(np.asarray(torque, dtype=float), damping, step)
+        torque = torque.tolist() if isinstance(torque, np.ndarray) else torque
         if self.limits is not None:
-            torque = np.minimum(np.maximum(torque, -self.limits), self.limits)
-        self.torque = torque.tolist() if isinstance(torque, np.ndarray) else torque
+            torque = [-top if t < -top else top if t > top else t for t, top in zip(torque, self.limits)]
+        self.torque = torque
 
     def apply(self) -> None:
         """Hand torque and other joint loads to the engine for the coming step."""
         total = self.torque
         if self.load is not self._zeros:
-            total = [a + b for a, b in zip(total, self.load, strict=True)]
+            total = list(map(add, total, self.load))
         bullet.setJointMotorControlArray(
             self.body, self._indices, bullet.TORQUE_CONTROL, forces=total, physicsClientId=self.client
         )
@@ -254,8 +264,10 @@ class SimulatedArm(Point):
             mass += step * damping
         return torque - multiply(damping, rate + step * np.linalg.solve(mass, rest))
 
-    def _act(self, fx: float, fy: float, fz: float) -> None:
-        self.locate()
+    def push_unsensed(self, fx: float, fy: float, fz: float) -> None:
+        """Add a force on the end point [N] that the force sensor does not see."""
+        if not self._located:
+            self.locate()
         if self._planar is not None:
             self.load = [load + x * fy - y * fx for load, (x, y) in zip(self.load, self._levers)]
         else:
@@ -323,7 +335,7 @@ class EndPoint:
         self.for_jacobian: tuple[float, ...] = tuple((axes.T @ local[:3, 3]).tolist())
 
 
-def _rotated(quaternion: tuple[float, ...], vector: tuple[float, ...]) -> tuple[float, float, float]:
+def rotated(quaternion: tuple[float, ...], vector: tuple[float, ...]) -> tuple[float, float, float]:
     """A vector turned by a quaternion (x, y, z, w): v + 2 u x (u x v + w v)."""
     i, j, k, w = quaternion
     a, b, c = vector

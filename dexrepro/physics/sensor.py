@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+Force = tuple[float, float, float]
+
 
 @dataclass(frozen=True)
 class Sensor:
@@ -43,7 +45,7 @@ def smoothing(cutoff: float, period: float) -> float:
 
 
 class ForceChannel:
-    """The force sensor of one arm, called once a control period with the true force (3,) [N]."""
+    """The force sensor of one arm, called once a control period with the true force (x, y, z) [N]."""
 
     def __init__(self, sensor: Sensor, period: float, rng: np.random.Generator | None) -> None:
         if sensor.force_noise and rng is None:
@@ -51,15 +53,20 @@ class ForceChannel:
         self._noise, self._rng = sensor.force_noise, rng
         self._share = smoothing(sensor.force_cutoff, period)
         late = round(sensor.force_delay / period)
-        self._queue: deque[NDArray[np.float64]] = deque([np.zeros(3)] * late, maxlen=late + 1)
-        self._value: NDArray[np.float64] | None = None
+        self._queue: deque[Force] = deque([(0.0, 0.0, 0.0)] * late, maxlen=late + 1)
+        self._value: Force | None = None
 
-    def __call__(self, force: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, force: Force) -> Force:
+        x, y, z = force
         if self._rng is not None and self._noise:
-            force = force + self._noise * self._rng.standard_normal(3)
-        self._queue.append(force)
-        late = self._queue[0]
-        self._value = late if self._value is None else self._value + self._share * (late - self._value)
+            noise, (a, b, c) = self._noise, self._rng.standard_normal(3).tolist()
+            x, y, z = x + noise * a, y + noise * b, z + noise * c
+        self._queue.append((x, y, z))
+        x, y, z = self._queue[0]
+        if self._value is not None:
+            share, (a, b, c) = self._share, self._value
+            x, y, z = a + share * (x - a), b + share * (y - b), c + share * (z - c)
+        self._value = x, y, z
         return self._value
 
 

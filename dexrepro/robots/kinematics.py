@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import accumulate
+from math import cos, sin
+from operator import add
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -56,7 +59,7 @@ def point_jacobian(arm: Arm, position: ArrayLike, link: int, point: ArrayLike) -
 
 def rotation_error(desired: ArrayLike, actual: ArrayLike) -> Array:
     """Rotation vector (..., 3) [rad], world frame, that turns the actual orientation (..., 3, 3) into the desired."""
-    difference = np.asarray(desired, dtype=float) @ np.swapaxes(np.asarray(actual, dtype=float), -1, -2)
+    difference = np.asarray(desired, dtype=float) @ np.asarray(actual, dtype=float).swapaxes(-1, -2)
     if difference.ndim == 2:
         (a, b, c), (d, e, f), (g, h, i) = difference.tolist()
         x, y, z = (h - f) / 2, (c - g) / 2, (d - b) / 2
@@ -76,23 +79,19 @@ class PlanarTip:
         first, *rest = arm.origins
         self.base = float(first[0, 3]), float(first[1, 3])
         self.height = float(forward(arm, np.zeros(arm.dof))[0][2])
-        turns = [math.atan2(origin[1, 0], origin[0, 0]) for origin in arm.origins]
-        self._geometry = [
-            (turn, float(after[0, 3]), float(after[1, 3])) for turn, after in zip(turns, (*rest, arm.tip), strict=True)
-        ]
+        self._turns = [math.atan2(origin[1, 0], origin[0, 0]) for origin in arm.origins]
+        self._sides = [(float(after[0, 3]), float(after[1, 3])) for after in (arm.tip, *reversed(rest))]
 
     def levers(self, q: Sequence[float]) -> list[tuple[float, float]]:
         """Vectors (x, y) [m] from each joint to the end point; the first one starts at ``base``."""
-        angle, sides = 0.0, []
-        for (turn, a, b), joint in zip(self._geometry, q):
-            angle += turn + joint
-            c, s = math.cos(angle), math.sin(angle)
-            sides.append((c * a - s * b, s * a + c * b))
+        angles = list(accumulate(map(add, self._turns, q)))
         x = y = 0.0
         result = []
-        for dx, dy in reversed(sides):
-            x += dx
-            y += dy
+        for a, b in self._sides:  # from the tip to the base
+            angle = angles.pop()
+            c, s = cos(angle), sin(angle)
+            x += c * a - s * b
+            y += s * a + c * b
             result.append((x, y))
         result.reverse()
         return result

@@ -76,8 +76,11 @@ class PlanarChain:
 
     def tip_torque(self, q: Triple, force: Point, links: Links | None = None) -> tuple[Any, Any, Any]:
         """Joint torques J^T F [N m] of a force (x, y) [N] at the tip."""
-        (x1, x2, x3), (y1, y2, y3) = self.jacobian(q, links)
-        return x1 * force[0] + y1 * force[1], x2 * force[0] + y2 * force[1], x3 * force[0] + y3 * force[1]
+        c1, c2, c3, s1, s2, s3 = links or self.links(q)
+        x, y = force
+        third = c3 * y - s3 * x
+        second = c2 * y - s2 * x + third
+        return c1 * y - s1 * x + second, second, third
 
     def centripetal(self, q: Triple, dq: Triple) -> Point:
         """Acceleration (x, y) of the tip [m/s^2] at joint rates [rad/s] without joint accelerations."""

@@ -36,7 +36,7 @@ def logged(controller: Any) -> tuple[Any, list[Any]]:
 
     def listening(sense: Any) -> Any:
         command = controller(sense)
-        log.append((sense.time, sense.position.copy(), sense.velocity.copy(), sense.force.copy(), list(command)))
+        log.append((sense.time, sense.angles, sense.rates, sense.felt, list(command)))
         return command
 
     return listening, log
@@ -51,8 +51,8 @@ def test_follower_commands_depend_on_its_own_measurements_alone(name: str) -> No
         world.run(config.duration, {"leader": planar_pair.Leader(config), "follower": follower})
     other = case("holding_comparison", name, stiffness=80, rest_length=0.7, leader__trajectory=2, leader__amplitude=0.3)
     replayed = planar_pair.Follower(other, other.laws[other.controller])
-    for time, position, velocity, force, command in log:
-        sense = SimpleNamespace(time=time, position=position, velocity=velocity, force=force)
+    for time, angles, rates, felt, command in log:
+        sense = SimpleNamespace(time=time, angles=angles, rates=rates, felt=felt)
         assert replayed(sense) == command
 
 

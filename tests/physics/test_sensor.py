@@ -11,20 +11,20 @@ from dexrepro.robots.planar import planar
 
 def test_low_pass_answers_a_step_with_its_time_constant():
     channel = ForceChannel(Sensor(force_cutoff=5.0), 1e-3, None)
-    channel(np.zeros(3))
-    values = np.array([channel(np.ones(3))[0] for _ in range(200)])
+    channel((0, 0, 0))
+    values = np.array([channel((1, 1, 1))[0] for _ in range(200)])
     np.testing.assert_allclose(values, 1 - np.exp(-2 * np.pi * 5.0 * 1e-3 * np.arange(1, 201)), atol=1e-12)
 
 
 def test_force_is_late_by_whole_control_periods():
     channel = ForceChannel(Sensor(force_delay=3e-3), 1e-3, None)
-    values = [channel(np.full(3, k))[0] for k in range(1, 8)]
+    values = [channel((k, k, k))[0] for k in range(1, 8)]
     assert values == [0, 0, 0, 1, 2, 3, 4]
 
 
 def test_noise_has_the_stated_deviation_and_needs_a_generator():
     channel = ForceChannel(Sensor(force_noise=0.05), 1e-3, np.random.default_rng(0))
-    values = np.array([channel(np.zeros(3)) for _ in range(4000)])
+    values = np.array([channel((0, 0, 0)) for _ in range(4000)])
     assert values.std() == pytest.approx(0.05, rel=0.03)
     with pytest.raises(ValueError, match="needs a random generator"):
         ForceChannel(Sensor(force_noise=0.05), 1e-3, None)

@@ -207,6 +207,19 @@ def test_divergence_is_told_with_time_arm_and_joint():
     assert np.isfinite(run["follower.velocity"]).all()
 
 
+def test_divergence_names_the_quantity_that_makes_up_most_of_the_sum():
+    rates, turned = np.array([300.0, 320.0, -310.0]), np.array([340.0, 0.0, 0.0])
+    with World(gravity=FLAT) as world:
+        arm = world.add_arm("arm", planar(*BOOK), FOLLOWER)
+        for angles, speeds, found in (
+            (turned, rates, "velocity of joint 'joint2' of arm 'arm' is 320 rad/s"),
+            (3 * turned, rates / 100, "angle of joint 'joint1' of arm 'arm' is 1020 rad"),
+        ):
+            arm.reset(angles, speeds)
+            run = world.run(0.01, on_divergence="stop")
+            assert run.status.endswith(found)
+
+
 def test_a_torque_that_is_not_a_number_is_a_divergence():
     with World(gravity=FLAT) as world:
         world.add_arm("arm", planar(*BOOK), FOLLOWER)

@@ -45,9 +45,9 @@ def simulate(config: Config, rng: Any) -> Recording:
 def path(shape: Config, time: float) -> Array:
     """Displacement (3,) [m] of the leader's gripper: minimum jerk along a line, then laps of a circle across x."""
     u = min(max((time - shape.line_start) / (shape.line_end - shape.line_start), 0.0), 1.0)
-    place = u**3 * (10 - 15 * u + 6 * u * u) * np.array(shape.line)
+    share, radius, (x, y, z) = u**3 * (10 - 15 * u + 6 * u * u), shape.radius, shape.line
     angle = 2 * math.pi * shape.laps * _eased((time - shape.circle_start) / (shape.laps * shape.period), shape.ramp)
-    return place + shape.radius * np.array((0.0, math.sin(angle), 1 - math.cos(angle)))
+    return np.array((share * x, share * y + radius * math.sin(angle), share * z + radius * (1 - math.cos(angle))))
 
 
 def _eased(share: float, ramp: float) -> float:

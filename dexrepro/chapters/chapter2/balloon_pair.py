@@ -77,11 +77,13 @@ def run(config: Config, rng: Any, path: Callable[[float], Array]) -> Recording:
         follower = Follower(config, world.arm("follower").arm)
         leader = Leader(config, world.arm("leader").arm, path, lambda now: follower.since_contact(now))
 
+        balloon: Any = world.elements[0]
+        guard, duration = config.guard, config.duration
+
         def stop(now: float) -> str | None:
-            force = world.elements[0].channels()["force"]
-            if force > config.guard:
-                return f"diverged at {now:.4g} s: the force is {force:.4g} N"
-            return "finished" if follower.since_contact(now) >= config.duration else None
+            if balloon.force > guard:
+                return f"diverged at {now:.4g} s: the force is {balloon.force:.4g} N"
+            return "finished" if now - follower.contact_time >= duration else None
 
         recording = world.run(
             config.duration + config.longest_approach,
@@ -110,26 +112,27 @@ class GripperServo:
         )  # fmt: skip
         self._law = ComputedTorque(model=self._model, frequency=servo.frequency)
         self._sample = 0
-        self._torque: Array = np.zeros(arm.dof)
+        self._torque = [0.0] * arm.dof
 
     @property
     def due(self) -> bool:
         """Whether the next call looks at its target."""
         return self._sample % 4 == 0
 
-    def __call__(self, sense: Any, target: Array) -> Array:
+    def __call__(self, sense: Any, target: Array) -> list[float]:
         """Torque (7,) [N m] towards a place (3,) [m], the measured contact force compensated."""
-        inverse, q = self._inverse, sense.position
+        inverse = self._inverse
         if self._sample == 0:
-            inverse.reset(q)
-            inverse.rest = q.copy()
+            inverse.reset(sense.position)
+            inverse.rest = sense.position
         if self.due:
             self._reference = inverse.position
             inverse(target, self._rotation)
         if self._sample % 2 == 0:
-            ahead = self._reference + (self._sample % 4 + 1) * self._step * inverse.velocity
-            contact = sense.force @ self._model.jacobian(q)[:3]
-            self._torque = self._law(ahead, q, sense.velocity, inverse.velocity) - contact
+            q, rates = sense.position, inverse.velocity
+            ahead = self._reference + (self._sample % 4 + 1) * self._step * rates
+            torque = self._law(ahead, q, sense.velocity, rates)
+            self._torque = (torque - self._model.tip_torque(q, sense.felt)).tolist()
         self._sample += 1
         return self._torque
 
@@ -145,7 +148,7 @@ class Leader:
         self._hand = np.linalg.inv(self._map)
         self._path, self._elapsed = path, elapsed
 
-    def __call__(self, sense: Any) -> Array:
+    def __call__(self, sense: Any) -> list[float]:
         if self._servo.due:
             hand = self._hand @ self._path(self._elapsed(sense.time))
             self._target = self._home + self._map @ hand
@@ -169,8 +172,8 @@ class Follower:
         """Time [s] since contact, 0 before it."""
         return max(now - self.contact_time, 0.0)
 
-    def __call__(self, sense: Any) -> Array:
-        fx, fy, fz = sense.force.tolist()
+    def __call__(self, sense: Any) -> list[float]:
+        fx, fy, fz = sense.felt
         if self.contact_time == math.inf:
             self.reference = self.reference - np.array((0.0, self._approach, 0.0))
             if math.sqrt(fx * fx + fy * fy + fz * fz) > self._threshold:

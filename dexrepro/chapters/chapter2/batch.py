@@ -24,7 +24,7 @@ SPIN = 200.0  # rad/s, a joint faster than this has lost control whatever the fo
 Rows = list[dict[str, Any]]
 
 # Runs whose law differs in structure (not in a number) are stepped in separate groups.
-STRUCTURE = ("law", "window", "velocity", "order", "implicit")
+STRUCTURE = ("law", "window", "velocity", "implicit")
 
 
 def table_rows(setting: Mapping[str, Any], laws: Sequence[str] | None = None) -> Rows:
@@ -82,9 +82,11 @@ def _loop(runs: pd.DataFrame, config: Any, edges: Array, noise: np.random.Genera
     chain = plant.chain
     kp = np.array(config.arm.stiffness)[:, None, None] * p["kp_scale"]
     kd = np.array(config.arm.damping)[:, None, None] * p["kd_scale"]
-    gravity, lead = np.where(p["gravity"], 9.81, 0.0), kd * p["velocity_reference"] / dt
+    heavy, leads = np.flatnonzero(p["gravity"]), bool(p["velocity_reference"].any())
+    lead = kd * p["velocity_reference"] / dt
     laws, regulation = grouped_laws(runs, dt), HoldingLineRegulation(gain=p["regulation"])
     home_x, home_y = plant.contact()[0]
+    low, high = config.follower.workspace
     for part, law in laws:
         law.reset(home_x[1, part])
     joints: Any = tuple(plant.position)
@@ -102,17 +104,19 @@ def _loop(runs: pd.DataFrame, config: Any, edges: Array, noise: np.random.Genera
         measured = force if noise is None else force + p["noise"] * noise.standard_normal((2, 1))
         for part, law in laws:
             reference[part] = law(x[1, part], measured[0, part])
-        np.clip(reference, *config.follower.workspace, out=reference)
+        np.minimum(np.maximum(reference, low, out=reference), high, out=reference)
         swing = config.leader.amplitude * math.sin(swing_rate * i * dt)
         leader_x = home_x[0] + np.where(first, swing, config.leader.drift * i * dt)
         leader_y = home_y[0] + np.where(first, 0.0, swing)
         follower_y = home_y[1] + regulation(measured[1])
-        target = np.stack((leader_x, reference)), np.stack((leader_y, follower_y))
+        target = np.array((leader_x, reference)), np.array((leader_y, follower_y))
         joints, before = chain.approach(joints, target, config.arm.ik_damping), wanted
         wanted = np.array(joints)
-        torque = kp * (wanted - plant.position) - kd * plant.velocity + lead * (wanted - before)
-        if gravity.any():
-            torque -= np.array(chain.gravity(plant.position, gravity))
+        torque = kp * (wanted - plant.position) - kd * plant.velocity
+        if leads:
+            torque += lead * (wanted - before)
+        if heavy.size:
+            torque[..., heavy] -= np.array(chain.gravity(plant.position[..., heavy]))
         plant.step(torque, force, measured * p["compensation"])
         if i % 20 == 0:
             spun |= ~(np.abs(plant.velocity).max(axis=(0, 1)) < SPIN)
@@ -168,12 +172,13 @@ def _passive(rows: pd.DataFrame, dt: float) -> PassiveImpedance:
 def _estimated(rows: pd.DataFrame, dt: float) -> ImpedanceReference:
     p = {name: column.to_numpy() for name, column in rows.items()}
     first = rows.iloc[0]
-    order = int(first["order"])
+    order = int(p["order"].max())
     zero = np.zeros(len(rows))
     estimation = MovementEstimation(
         stiffness=p["initial_stiffness"],
         coefficients=[p["initial_rest"], *[zero] * (order - 1)],
-        rates=[p[f"rate_{j}"] for j in range(1, order + 2)],
+        # A run of lower order is one whose further coefficients start at zero and stay there.
+        rates=[np.where(j <= p["order"] + 1, p[f"rate_{j}"], 0.0) for j in range(1, order + 2)],
         dt=dt,
         window=None if math.isnan(first["window"]) else float(first["window"]),
         implicit=bool(first["implicit"]),

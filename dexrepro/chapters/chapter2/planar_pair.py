@@ -14,7 +14,7 @@ from dexrepro.physics.elements import Elastic, Ends
 from dexrepro.physics.plant import Controller
 from dexrepro.physics.world import World
 from dexrepro.robots.planar import planar
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar_chain import Links, PlanarChain
 
 
 def scene(config: Config) -> World:
@@ -50,11 +50,11 @@ def run(world: World, config: Config, law: Any, record_every: int = 5) -> Record
     estimation = getattr(law, "estimation", None)
     if estimation is not None:
         probes["estimate"] = lambda: (estimation.position, estimation.stiffness, estimation.velocity)
-    (contact,) = world.elements
+    contact: Any = world.elements[0]
     limit = config.stiffness * config.rest_length
 
     def squeezed(time: float) -> str | None:
-        force = contact.channels()["force"]
+        force = contact.force
         return f"diverged at {time:.4g} s: the force is {force:.4g} N" if force >= limit else None
 
     controllers: dict[str, Controller] = {"leader": Leader(config), "follower": follower}
@@ -81,12 +81,12 @@ class TipServo:
         self._damping = config.arm.ik_damping
         self._joints: Any = None
 
-    def __call__(self, sense: Any, target: tuple[float, float]) -> list[float]:
+    def __call__(self, sense: Any, target: tuple[float, float], links: Links | None = None) -> list[float]:
         """Torque [N m] towards a tip position (x, y) [m], the measured contact force compensated."""
-        q, dq = sense.position.tolist(), sense.velocity.tolist()
+        q, (fx, fy, _) = sense.angles, sense.felt
         self._joints = self.chain.approach(self._joints or q, target, self._damping)
-        contact = self.chain.tip_torque(q, sense.force.tolist())
-        return [law(r, a, v) - t for law, r, a, v, t in zip(self._laws, self._joints, q, dq, contact)]
+        contact = self.chain.tip_torque(q, (fx, fy), links)
+        return [law(r, a, v) - t for law, r, a, v, t in zip(self._laws, self._joints, q, sense.rates, contact)]
 
 
 class ImpedanceServo:
@@ -96,9 +96,9 @@ class ImpedanceServo:
         self.chain = PlanarChain(config.arm.lengths, config.arm.masses, base)
         self._law = TargetImpedance(model=self.chain, desired_force=config.desired_force, **config.impedance)
 
-    def __call__(self, sense: Any, target: tuple[float, float]) -> list[float]:
-        fx, fy, _ = sense.force.tolist()
-        return self._law(sense.position.tolist(), sense.velocity.tolist(), (fx, fy), target)
+    def __call__(self, sense: Any, target: tuple[float, float], links: Links | None = None) -> list[float]:
+        fx, fy, _ = sense.felt
+        return self._law(sense.angles, sense.rates, (fx, fy), target)
 
 
 class Leader:
@@ -129,14 +129,16 @@ class Follower:
         self.reference = (0.0, 0.0)
 
     def __call__(self, sense: Any) -> list[float]:
-        x, y = self._servo.chain.forward(sense.position.tolist())
+        links = self._servo.chain.links(sense.angles)
+        x, y = self._servo.chain.forward(sense.angles, links)
         if self._home is None:
             self._home = x, y
             self._law.reset(x)
-        fx, fy, _ = sense.force.tolist()
+        fx, fy, _ = sense.felt
         along, across = self._law(x, fx), self._home[1] + self._regulation(fy)
         self.reference = along, across
-        return self._servo(sense, (min(max(along, self._low), self._high), across))
+        low, high = self._low, self._high
+        return self._servo(sense, (low if along < low else high if along > high else along, across), links)
 
 
 class ConstantVector:
