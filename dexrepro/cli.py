@@ -402,7 +402,7 @@ def render_command(options: argparse.Namespace) -> int:
             folder = results / f"chapter{number}" / experiment.name
             if film := animation.film_of(folder, experiment):
                 films.append(film)
-            outdated = film is not None and not animation.up_to_date(film, experiment)
+            outdated = film is not None and not animation.up_to_date(film.with_suffix(f".{kind}"), experiment)
             if experiment.name in only or (not only and outdated):
                 folders.append(folder)
     if not folders and not films:
