@@ -174,10 +174,14 @@ class _Report:
     def _film(self, path: Path, experiment: Experiment, target: Path) -> dict[str, str]:
         for suffix in (".gif", ".png"):
             _copy(path.with_suffix(suffix), target / f"film_{path.stem}{suffix}")
-        film = experiment.film
-        caption = film.caption if film and film.case == path.stem else "The arms, from the recording."
-        link = f"files/{target.name}/film_{path.stem}"
-        return {"case": path.stem, "caption": caption, "gif": f"{link}.gif", "still": f"{link}.png"}
+        film, link = experiment.film, f"files/{target.name}/film_{path.stem}"
+        return {
+            "case": path.stem,
+            "caption": film.caption if film and film.case == path.stem else "The arms, from the recording.",
+            "alt": f"The simulated arms, and {film.label} over time" if film else "The simulated arms",
+            "gif": f"{link}.gif",
+            "still": f"{link}.png",
+        }
 
     def _study(self, experiment: str, target: Path) -> dict[str, Any] | None:
         found = self.studies.get(experiment)

@@ -127,8 +127,11 @@ def test_in_a_real_browser(report: Path, tmp_path: Path) -> None:
       box.value = 'nothing grows';
       box.dispatchEvent(new Event('input'));
       const hit = document.querySelector('#found a');
+      const film = document.querySelector('figure.film');
+      const sources = film && [film.querySelector('img').getAttribute('src')];
+      if (film) { film.querySelector('button').click(); sources.push(film.querySelector('img').getAttribute('src')); }
       const away = performance.getEntriesByType('resource').filter((r) => !r.name.startsWith('file:')).length;
-      const state = {broken, away, hit: hit && hit.getAttribute('href'), title: document.title};
+      const state = {broken, away, hit: hit && hit.getAttribute('href'), sources, title: document.title};
       const pre = document.createElement('pre'); pre.id = 'probe'; pre.textContent = JSON.stringify(state);
       document.body.append(pre);
     }, 300));
@@ -136,10 +139,10 @@ def test_in_a_real_browser(report: Path, tmp_path: Path) -> None:
     for name in ("index.html", "chapter90.html", "symbols.html", "equations.html"):
         text = (report / name).read_text().replace('loading="lazy"', "").replace("<head>", f"<head>{probe}")
         (report / f"probe-{name}").write_text(text)
-        flags = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking"
+        flags = "--headless --no-sandbox --force-prefers-reduced-motion --disable-gpu --no-first-run"
         command = [BROWSER, *flags.split(), "--disable-component-update", "--disable-sync", "--dump-dom",
-                   "--enable-logging=stderr", "--virtual-time-budget=4000", f"--user-data-dir={tmp_path / 'profile'}",
-                   (report / f"probe-{name}").resolve().as_uri()]  # fmt: skip
+                   "--disable-background-networking", "--enable-logging=stderr", "--virtual-time-budget=4000",
+                   f"--user-data-dir={tmp_path / 'profile'}", (report / f"probe-{name}").resolve().as_uri()]  # fmt: skip
         done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
         found = re.search(r'<pre id="probe">(.*?)</pre>', done.stdout)
         assert found, done.stderr[-2000:]
@@ -147,4 +150,6 @@ def test_in_a_real_browser(report: Path, tmp_path: Path) -> None:
         assert not state["title"].startswith("ERROR"), state
         assert (state["broken"], state["away"]) == (0, 0), state
         assert state["hit"] == "chapter90.html#C90.02", state
+        still, moving = (f"files/decay/film_plain.{kind}" for kind in ("png", "gif"))
+        assert state["sources"] == ([still, moving] if name == "chapter90.html" else None), "plays when asked to"
         assert "CONSOLE" not in done.stderr, done.stderr[-2000:]
