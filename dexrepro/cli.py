@@ -391,7 +391,11 @@ def new_command(options: argparse.Namespace) -> int:
 
 
 def render_command(options: argparse.Namespace) -> int:
-    """``dexrepro render (FOLDER | chapter=N [only=EXPERIMENT]) [case=NAME] [format=gif|mp4]``."""
+    """``dexrepro render [FOLDER | chapter=N] [only=EXPERIMENT] [case=NAME] [format=gif|mp4]``.
+
+    Without a folder or an experiment: the film of every experiment that declares one and has a result, where it is
+    missing or older than its recording.
+    """
     from dexrepro import chapters
     from dexrepro.config import InputError
     from dexrepro.report import animation
@@ -403,13 +407,21 @@ def render_command(options: argparse.Namespace) -> int:
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
         raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
+    films = []
     for number in () if folders else numbers:
         for experiment in chapters.load(number).experiments:
             folder = results / f"chapter{number}" / experiment.name
-            if experiment.name in only or (not only and experiment.has("scene") and folder.exists()):
+            if film := animation.film_of(folder, experiment):
+                films.append(film)
+            outdated = film is not None and not animation.up_to_date(film.with_suffix(f".{kind}"), experiment)
+            if experiment.name in only or (not only and outdated):
                 folders.append(folder)
+    if not folders and not films:
+        raise InputError(f"no result in {results} has a film; run first: dexrepro run")
     for folder in folders:
         out.print(str(animation.render(folder, values.get("case"), kind)), markup=False)
+    if not folders:
+        out.print(f"nothing to render: {len(films)} films are up to date")
     return OK
 
 
@@ -435,7 +447,7 @@ def study_command(options: argparse.Namespace) -> int:
             except BrokenProcessPool:
                 err.print("a process of the study was killed; the same command completes what is missing", markup=False)
                 return FAILED
-            _print_study(name, path)
+            _print_study(name, path, results)
     return OK
 
 
@@ -450,14 +462,14 @@ def _study_jobs(options: argparse.Namespace) -> int:
         raise InputError(f"jobs = {jobs or 'null'} is not allowed: it must be a whole number of 1 or greater")
     launcher = [f"{key}={value}" for key, value in values.items() if key.startswith("hydra")]
     options.selection = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
-    numbers, _, only = _selected(options, ("claim", "samples", "hours"))
+    numbers, folder, only = _selected(options, ("claim", "samples", "hours"))
     names = [name for number in numbers for name in study.experiments_of(number, only, values.get("claim"))]
     selection = ",".join(json.dumps(text) for text in options.selection)
     results = [text for text in options.selection if text.startswith("results=")]
     status = _launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
     for name in names:
         if study.summary_file(name).exists():
-            _print_study(name, study.summary_file(name))
+            _print_study(name, study.summary_file(name), folder)
     return status
 
 
@@ -469,11 +481,14 @@ def _study_job(config: Any) -> None:
         raise JobFailed("a process was killed; the same command completes what is missing")
 
 
-def _print_study(name: str, path: Path) -> None:
+def _print_study(name: str, path: Path, results: Path) -> None:
+    from dexrepro.report import studies
     from dexrepro.storage import read_json
 
-    out.print(f"{name}: {path}", markup=False)
-    for claim, row in read_json(path)["claims"].items():
+    summary = read_json(path)
+    drawing = studies.save(summary, results / "study" / f"{name}.svg")
+    out.print(f"{name}: {path}, drawn in {drawing}", markup=False)
+    for claim, row in summary["claims"].items():
         interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
         most = f", follows {row['parameter']} most" if row["parameter"] else ""
         out.print(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}){most}", markup=False)

@@ -321,7 +321,17 @@ def assemble(plan: Plan) -> None:
         write_json(folder / "metrics.json", flat(experiment.name, nested))
         write_json(folder / "run.json", _run_entry(plan, {case: data["entry"] for case, data in cases.items()}))
         present(plan.chapter, experiment, folder)
+        _keep_animations(plan.folder, folder)
     _prune(plan)
+
+
+def _keep_animations(old: Path, new: Path) -> None:
+    """Take over what was rendered from recordings that are still the same (cached files keep their time)."""
+    for path in sorted(old.glob("animation/*")):
+        recording = new / "series" / f"{path.stem}.csv.gz"
+        if recording.exists() and recording.stat().st_mtime <= path.stat().st_mtime:
+            (new / "animation").mkdir(exist_ok=True)
+            _link(path, new / "animation" / path.name)
 
 
 def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config) -> None:

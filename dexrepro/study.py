@@ -50,6 +50,7 @@ def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list
     return [by_id[claim].experiment]
 
 
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the margin, in a summary
 _shipped = cache(compose_chapter)
 
 
@@ -187,6 +188,7 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
         claims[claim.id] = {
             "samples": len(pairs), "holds": holds, "share": holds / len(pairs), "low": low, "high": high,
             "parameter": parameter, "correlation": correlation, "median_margin": float(np.median(margins)),
+            "quantiles": np.quantile(margins, QUANTILES).tolist(),
         }  # fmt: skip
     failed = sum(entry["error"] is not None for entry in entries)
     varied = {key: [o.low, o.high] for key, o in parameters(chapter, experiment).items()}

@@ -48,6 +48,17 @@ def test_what_is_there_is_not_run_again_unless_forced(toy: Path) -> None:
     assert (toy / "results/chapter90/decay/run.json").stat().st_mtime_ns > stamp
 
 
+def test_a_film_stays_while_its_recording_stays(toy: Path) -> None:
+    folder = run().folders["decay"]
+    (folder / "animation").mkdir()
+    (folder / "animation/plain.gif").touch()
+    (folder / "run.json").write_text("{}")  # as after a change of the drawing code
+    run()
+    assert (folder / "animation/plain.gif").exists()
+    run(force=True)
+    assert not (folder / "animation").exists()
+
+
 def test_an_override_leaves_the_results_of_the_book_alone(toy: Path) -> None:
     run()
     before = (toy / "results/chapter90/decay/metrics.json").read_bytes()

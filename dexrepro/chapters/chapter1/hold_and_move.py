@@ -18,7 +18,7 @@ from scipy import signal
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
@@ -55,6 +55,10 @@ RATE = 50.0
 SIDES = {"leader": "right", "follower": "left"}
 LEVEL = np.stack([(0.0, 0.0, -1.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], axis=1)  # R_D while the line is level
 VIEW = Camera(target=(0.5, 0.0, 0.3), distance=1.45, yaw=75.0, pitch=-18.0)
+FILM = Film(
+    "t1_proposed", "Two arms lift the ball, tilt and swing it and put it down while the force stays at 15 N.", VIEW,
+    "force", "Contact force [N]", reference=15.0,
+)  # fmt: skip
 LAWS = {"proposed": "book", "passive": "rival", "fixed": "plain"}
 PRINTED = {  # RMS force error [N], Section 1.5.2.2: proposed, impedance, fixed distance
     "t1": (0.87, 1.22, 2.48),
@@ -86,6 +90,16 @@ def scene(config: Config, rng: Any = None) -> World:
     x, y, z = middle(config)
     world.add_box("table", (0.5, 1.2, 0.04), (x + 0.05, y, z - radius - 0.02), colour=TABLE)
     return world
+
+
+def joint_channels(joints: Any) -> dict[str, Any]:
+    """Joint angles (n, 14) [rad] of both arms as the channels of the World."""
+    return {f"{name}.position": joints[:, 7 * k : 7 * (k + 1)] for k, name in enumerate(SIDES)}
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    channels = {"time": recording.time, "object.pose": recording["object"], "force": recording["force"]}
+    return Recording(channels | joint_channels(recording["joints"]))
 
 
 def simulate(config: Config, rng: Any) -> Recording:

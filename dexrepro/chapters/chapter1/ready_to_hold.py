@@ -16,9 +16,9 @@ import pandas as pd
 from scipy.spatial.transform import Rotation
 
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
-from dexrepro.chapters.chapter1.hold_and_move import BALL, FLIP, LEVEL, SIDES
+from dexrepro.chapters.chapter1.hold_and_move import BALL, FLIP, LEVEL, SIDES, joint_channels
 from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
@@ -46,6 +46,11 @@ TABLES = {"T1.E": "Potential field: adjustable weights and ablations"}
 RATE = 25.0
 SHAKEN, APPROACH, HOLD, PITCHED = 18.0, 24.0, 30.0, 38.0  # s, ends of the phases
 VIEW = Camera(target=(0.5, -0.06, 0.3), distance=1.45, yaw=75.0, pitch=-18.0)
+FILM = Film(
+    "adjustable", "The left arm follows the ball that a person moves, and comes to it when the right arm does; contact "
+    "is not simulated.", Camera(target=(0.5, -0.08, 0.27), distance=1.4, yaw=75.0, pitch=-18.0),
+    "clearance", "Distance to the ball [mm]", scale=1e3,
+)  # fmt: skip
 INSTANTS = {"a": 1.5, "b": 7.5, "c": 13.5, "d": 21.0, "e": 25.0, "f": 32.0, "g": 40.0}
 
 
@@ -83,6 +88,12 @@ def scene(config: Config) -> World:
         world.add_arm(name, arm, solve_pose(arm, posture(side), *starts[name]))
     world.add_sphere("object", config.radius, config.place, colour=BALL)
     return world
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    clearance = np.linalg.norm(recording["follower"] - recording["object"], axis=1) - config.radius
+    return Recording({"time": recording.time, "object.pose": recording["object"], "clearance": clearance}
+                     | joint_channels(recording["joints"]))  # fmt: skip
 
 
 def script(config: Config) -> dict[str, Any]:

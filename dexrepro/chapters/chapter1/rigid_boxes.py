@@ -18,7 +18,7 @@ from dexrepro.chapters.chapter1.followers import Follower, solve_pose
 from dexrepro.chapters.chapter1.hold_and_move import FLIP, LEVEL, SIDES, TABLE
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.control.potential_field import PotentialField
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
@@ -42,6 +42,10 @@ TABLES = {"T1.F": "Boxes carried into the bin"}
 RATE = 100.0
 SIZES = ("small", "medium", "large")
 VIEW = Camera(target=(0.5, -0.05, 0.22), distance=1.25, yaw=75.0, pitch=-22.0)
+FILM = Film(
+    "medium", "Two arms grip a rigid box by friction, carry it and drop it into the bin.",
+    Camera(target=(0.5, -0.09, 0.22), distance=1.4, yaw=75.0, pitch=-22.0), "force_0", "Contact force [N]",
+)  # fmt: skip
 GRIPPED, LIFTED, CARRIED, RELEASED = 4.5, 6.0, 9.0, 9.6  # s
 BIN = (0.62, 0.2)  # m, centre
 ALONG = np.array([0.0, 1.0, 0.0])
@@ -125,6 +129,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     for k, recording in enumerate(recordings):
         if len(recording.time) == len(first.time):
             series |= {f"{key}_{k}": recording[key] for key in ("force", "height", "phase")}
+    series |= {name: first[name] for name in ("leader.position", "follower.position", "box.pose")}
     return Recording(
         series=series, frames={"runs": pd.DataFrame(rows)}, images=images, steps=sum(r.steps for r in recordings),
         simulated=sum(r.simulated for r in recordings),
@@ -165,8 +170,7 @@ def _carry(config: Config, rng: Any, offset: Any, pictures: dict[str, Any] | Non
                     (config.duration - 0.02, lambda: shoot("dropped"))] if pictures is not None else (),
             record_every=round(dt / config.step),
         )  # fmt: skip
-    recording.series = {
-        "time": recording.time,
+    recording.series |= {
         "force": np.maximum(recording["follower.force"][:, 1], 0.0),
         "height": recording["box.pose"][:, 2],
         "phase": recording["phase"],

@@ -11,13 +11,23 @@ from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics, rms
-from dexrepro.chapters.chapter3.scene import ARM, FOREARM, MID_FOREARM, Touching, build, gripper_arm
+from dexrepro.chapters.chapter3.scene import (
+    ARM,
+    ELBOW,
+    FILMED,
+    FOREARM,
+    MID_FOREARM,
+    Touching,
+    build,
+    cutaway,
+    gripper_arm,
+)
 from dexrepro.control.momentum_observer import MomentumObserver
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.elements import Push
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
-from dexrepro.robots.kinematics import point_jacobian
+from dexrepro.robots.kinematics import joint_frames, point_jacobian
 
 Array = NDArray[np.float64]
 FIGURES = {
@@ -46,6 +56,10 @@ FIGURES = {
 TABLES = {"T3.B": "Push: laws, models and directions", "T3.C": "Observer gain: lag and relative error"}
 RATE = 100.0
 SWEPT = {"lag": "lag", "noisy": "noisy_error", "clean": "clean_error"}
+FILM = Film(
+    "plus", "A push of 30 N on the forearm moves the arm by millimetres; it returns when let go.", FILMED,
+    "rcm_distance", "Dis_R [mm]", scale=1e3, span=(4.0, 9.5),
+)  # fmt: skip
 JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 
 
@@ -53,6 +67,18 @@ def scene(config: Config) -> World:
     world = build(config)
     world.add(Push(ARM, trapezoid(config.push), FOREARM, MID_FOREARM))
     return world
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    """Shows the push as a bar that ends at the forearm."""
+    shown = cutaway(world, recording, config)
+    elbow = joint_frames(gripper_arm(config.gripper), recording[f"{ARM}.position"])[:, ELBOW]
+    force = np.stack([recording[f"push.{axis}"] for axis in "xyz"], axis=1)
+    size = np.linalg.norm(config.push.force)
+    forearm = elbow[:, :3, 3] + elbow[:, :3, :3] @ MID_FOREARM - 0.17 * force / size
+    world.add_box("push", (0.025, 0.2, 0.025), (0, 0, 0), colour=(0.0, 0.45, 0.7, 1.0), collides=False)
+    shown.series["push.pose"] = np.where(np.linalg.norm(force, axis=1, keepdims=True) > 0, forearm, -9.0)
+    return shown
 
 
 def trapezoid(push: Config) -> Callable[[float], tuple[float, ...]]:

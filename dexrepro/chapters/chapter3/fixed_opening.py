@@ -10,8 +10,8 @@ import pandas as pd
 
 from dexrepro.chapters.chapter3 import drawings, reach
 from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
-from dexrepro.chapters.chapter3.scene import CAMERA, Touching, build
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.chapters.chapter3.scene import CAMERA, FILMED, Touching, build, cutaway
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 
 _REACH = (
     "Distance of the end point to the target and shortest distance Dis_R of the arm to the remote centre in reach "
@@ -56,7 +56,11 @@ TABLES = {
 RATE = 50.0
 REACHES = (1, 2, 3, 4)
 
-scene = build
+scene, stage = build, cutaway
+FILM = Film(
+    "reach1", "The gripper passes the opening to the cube in the box and the arm stays near the opening's centre.",
+    FILMED, "rcm_distance", "Dis_R [mm]", scale=1e3,
+)  # fmt: skip
 
 
 def simulate(config: Config, rng: Any) -> Recording:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import drawings, reach
 from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
-from dexrepro.chapters.chapter3.scene import ARM, Touching, build
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.chapters.chapter3.scene import ARM, FILMED, Touching, build, cutaway
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.world import Camera, World
 
 Array = NDArray[np.float64]
@@ -38,6 +38,10 @@ FIGURES = {
 TABLES = {"T3.D": "Moving opening: laws and models"}
 RATE = 50.0
 VIEW = Camera(target=(0.62, -0.2, 0.15), distance=1.3, yaw=30.0, pitch=-40.0)
+FILM = Film(
+    "track", "The lid moves along a figure of eight while the arm stands in its opening and holds the target.", FILMED,
+    "rcm_distance", "Dis_R [mm]", scale=1e3, span=(4.0, 15.5),
+)  # fmt: skip
 
 
 def path(config: Config) -> Callable[[float], Array]:
@@ -54,6 +58,12 @@ def path(config: Config) -> Callable[[float], Array]:
 
 def scene(config: Config) -> World:
     return build(config, path(config))
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    shown = cutaway(world, recording, config)
+    shown.series["lid.pose"] = recording["centre"]
+    return shown
 
 
 def simulate(config: Config, rng: Any) -> Recording:

@@ -10,8 +10,9 @@ import pandas as pd
 
 from dexrepro.chapters.chapter4 import payload_arm
 from dexrepro.chapters.chapter4.measures import Array, rms
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.networks import Lattice
+from dexrepro.physics.rendering import Camera
 from dexrepro.robots import kinematics
 from dexrepro.robots.baxter import baxter
 
@@ -32,7 +33,12 @@ FIGURES = {
 TABLES = {"T4.C": "Nine trajectories with a hanging payload: errors, bound and nodes by method"}
 RATE = 50.0
 
-scene = payload_arm.scene
+scene, stage = payload_arm.scene, payload_arm.stage
+FILM = Film(
+    "reuse", "With what it learned the arm carries the loose payload from A to D, E and F (drawn hanging straight).",
+    Camera(target=(0.42, -0.45, 0.08), distance=1.25, yaw=-60.0, pitch=-20.0), "error", "Tracking error [mm]",
+    scale=1e3, span=(24.0, 39.0),
+)  # fmt: skip
 
 
 def simulate(config: Config, rng: Any) -> Recording:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter5 import crossing, pen
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.humans.crossing import clearance, obstacle_boxes
 from dexrepro.physics.rendering import Camera
 from dexrepro.robots.arm import Pose, Shape
@@ -71,6 +71,16 @@ def scene(config: Config) -> Any:
 
 
 CAMERA = Camera(target=(0.12, -0.01, -0.045), distance=0.42, yaw=68.0, pitch=-22.0, field_of_view=40.0)
+FILM = Film(
+    "film3", "The arm lifts the pen over three cubes and puts it down at the central goal.",
+    Camera(target=(0.12, -0.01, -0.035), distance=0.46, yaw=68.0, pitch=-22.0, field_of_view=40.0), "clearance",
+    "Pen to obstacle [mm]", scale=10.0,
+)  # fmt: skip
+
+
+def stage(world: Any, recording: Recording, config: Config) -> Recording:
+    recording.series["clearance"] = clearance(pen.from_table(recording["arm.tip"]), config.blocks)
+    return recording
 
 
 def _film(recording: Recording, config: Config) -> dict[str, Any]:

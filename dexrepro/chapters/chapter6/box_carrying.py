@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter6 import arms, bimanual
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.rendering import Camera
@@ -31,6 +31,11 @@ TABLES = {"T6.Sd": "Variants of law, squeeze and joint stiffness in carrying the
 RATE = 100.0
 SIDES = ("left", "right")
 FRONT = Camera(target=(0.62, 0.0, 0.12), distance=1.55, yaw=115.0, pitch=-25.0, field_of_view=42.0)
+FILM = Film(
+    "constrained", "Two arms carry the box between flat palms and put it down.",
+    Camera(target=(0.62, 0.03, 0.14), distance=1.85, yaw=115.0, pitch=-25.0, field_of_view=42.0), "palm_left",
+    "Force of the left palm [N]",
+)  # fmt: skip
 WOOD = (0.80, 0.65, 0.45, 1.0)
 
 

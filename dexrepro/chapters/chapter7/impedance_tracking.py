@@ -9,9 +9,10 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter7 import desk, skills
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.elements import Push
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.world import World
 from dexrepro.robots.pen_arm import pen_arm
 
 FIGURES = {
@@ -33,6 +34,19 @@ RATE = 100.0
 PICTURES = {"a": 0.5, "b": 1.8, "c": 2.7, "d": 3.5, "e": 4.6, "f": 6.5}
 
 scene = desk.scene
+FILM = Film(
+    "muscle", "The arm carries the cube past the stack; its tip stays within micrometres of the plan.", desk.CAMERA,
+    "tracking", "Error of the tip [µm]", scale=1e6,
+)  # fmt: skip
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    """The cube lies at its start, in the gripper from picking to release, then where it was put down."""
+    time, tip = recording.time, recording["arm.tip"]
+    pick, release = np.searchsorted(time, [config.pick, config.release])
+    recording.series["cube.pose"] = tip[np.clip(np.arange(len(time)), pick, release)]
+    recording.series["tracking"] = tip - recording["planned"]
+    return recording
 
 
 def simulate(config: Config, rng: Any) -> Recording:
