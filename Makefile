@@ -1,4 +1,4 @@
-# make figures: run the book and build its report.  make test: all tests.  Both set up everything they need.
+# make figures: run the book, render its films and build its report.  make test: all tests.  Both set up everything they need.
 PYTHON ?= python3
 BIN := .venv/bin
 EXTRAS ?= dev
@@ -7,6 +7,7 @@ EXTRAS ?= dev
 
 figures: .venv/ready
 	$(BIN)/dexrepro run
+	$(BIN)/dexrepro render
 	$(BIN)/dexrepro report
 
 test: lint

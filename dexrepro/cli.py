@@ -7,7 +7,7 @@ import json
 import re
 import signal
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
@@ -101,9 +101,8 @@ def run_command(arguments: list[str]) -> int:
     arguments = [quoted(argument) for argument in arguments]
     extra_dir, overrides = _config_dir_option(arguments)
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
-        given = [text for text in overrides if not text.startswith("-") and ("=" in text or text.startswith("~"))]
-        flags = [argument for argument in arguments if argument not in given]
-        return _hydra_run([*flags, *_check_sweep(given, extra_dir), *given])  # argparse wants them in this order
+        given = [text for text in overrides if not text.startswith("-") and "=" in text]
+        return _launch([*arguments, *_checked_chapter(given, extra_dir)], _run_job)
     return run_overrides(overrides, extra_dir)
 
 
@@ -143,8 +142,22 @@ def _make_importable(folder: str) -> None:
         sys.path.insert(0, path)
 
 
-def run_overrides(overrides: Sequence[str], extra_dir: str | None = None, workers: int | None = None) -> int:
-    """Plan, run and summarise what a list of overrides selects."""
+def run_overrides(overrides: Sequence[str], extra_dir: str | None = None) -> int:
+    """Plan, run and summarise what a list of overrides selects; say on stderr what failed."""
+    failures = _sentences(_run(overrides, extra_dir))
+    for sentence in failures:
+        err.print(sentence, markup=False)
+    return FAILED if failures else OK
+
+
+def _sentences(outcome: Any) -> list[str]:
+    return [
+        f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''} failed: {reason}"
+        for reason, names in outcome.reasons().items()
+    ]
+
+
+def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     from dexrepro.config import compose_chapter
     from dexrepro.progress import Bar, Lines, Silent
     from dexrepro.runner import Outcome, plan_chapter, run_plans
@@ -163,17 +176,14 @@ def run_overrides(overrides: Sequence[str], extra_dir: str | None = None, worker
     with progress if isinstance(progress, Bar) else nullcontext():
         outcome: Outcome = run_plans(
             plans,
-            workers=workers or positive_workers(settings.get("workers")),
+            workers=positive_workers(settings.get("workers")),
             force=bool(settings.get("force")),
             progress=progress,
         )
     outcome.skipped = skipped
     if not quiet:
         _print_summary(outcome)
-    for sentence, names in outcome.reasons().items():
-        others = f" and {len(names) - 1} more" if len(names) > 1 else ""
-        err.print(f"{names[0]}{others} failed: {sentence}", markup=False)
-    return FAILED if outcome.failures else OK
+    return outcome
 
 
 def positive_workers(value: Any) -> int | None:
@@ -234,40 +244,38 @@ def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[s
     return list(dict.fromkeys(owner[name] for name in named if name in owner))
 
 
-def _check_sweep(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
-    """Refuse what no job of a sweep could use before Hydra starts any; the override of a chapter meant, not named."""
+def _checked_chapter(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
+    """Refuse what no job of a sweep could use, before Hydra starts any; the chapter where overrides only imply it."""
     from dexrepro.config import check_overrides, compose_chapter
 
     numbers, rest = chapters_of(overrides, extra_dir)
     if extra_dir is None:  # what its files add is known to Hydra alone
         check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
-    return [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and rest == list(overrides) else []
+    named = any(re.match(r"chapter=|figure=.*,", text) for text in overrides)
+    return [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and not named else []
 
 
-def _hydra_run(arguments: list[str]) -> int:
-    import hydra
+def _launch(arguments: Sequence[str], job: Callable[[Any], None]) -> int:
+    from dexrepro.sweep import JobFailed, launch
 
-    from dexrepro.config import config_dir
-
-    sys.argv = ["dexrepro run", *arguments]
-    hydra.main(str(config_dir().resolve()), "config", version_base="1.3")(_hydra_job)()
+    try:
+        launch(arguments, job)
+    except JobFailed as error:
+        err.print(f"a job of the sweep failed: {error}", markup=False)
+        return FAILED
     return OK
 
 
-def _hydra_job(config: Any) -> None:
-    """One job of a multirun: the same as a plain run with its overrides, in one worker."""
-    from hydra.core.hydra_config import HydraConfig
+def _run_job(config: Any) -> None:
+    """One job of a sweep: the same as a plain run with its overrides."""
+    from dexrepro.sweep import JobFailed, enter_launch_folder, job_overrides
 
-    task = HydraConfig.get().overrides.task
-    chapter = HydraConfig.get().runtime.choices.get("chapter")
-    overrides = [text for text in task if not text.startswith("chapter=")]
-    selected = [f"chapter='{chapter}'"] if chapter else []
-    sources = HydraConfig.get().runtime.config_sources
-    extra_dir = next((source.path for source in sources if source.provider == "command-line"), None)
+    enter_launch_folder()
+    overrides, extra_dir = job_overrides()
     if extra_dir is not None:
         _make_importable(extra_dir)
-    if run_overrides([*selected, *overrides], extra_dir, workers=1) != OK:
-        raise RuntimeError("some cases failed")
+    if failures := _sentences(_run(overrides, extra_dir)):
+        raise JobFailed("; ".join(failures))
 
 
 def _print_summary(outcome: Any) -> None:
@@ -403,7 +411,11 @@ def new_command(options: argparse.Namespace) -> int:
 
 
 def render_command(options: argparse.Namespace) -> int:
-    """``dexrepro render (FOLDER | chapter=N [only=EXPERIMENT]) [case=NAME] [format=gif|mp4]``."""
+    """``dexrepro render [FOLDER | chapter=N] [only=EXPERIMENT] [case=NAME] [format=gif|mp4]``.
+
+    Without a folder or an experiment: the film of every experiment that declares one and has a result, where it is
+    missing or older than its recording.
+    """
     from dexrepro import chapters
     from dexrepro.config import InputError
     from dexrepro.report import animation
@@ -415,21 +427,33 @@ def render_command(options: argparse.Namespace) -> int:
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
         raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
+    films = []
     for number in () if folders else numbers:
         for experiment in chapters.load(number).experiments:
             folder = results / f"chapter{number}" / experiment.name
-            if experiment.name in only or (not only and experiment.has("scene") and folder.exists()):
+            if film := animation.film_of(folder, experiment):
+                films.append(film)
+            outdated = film is not None and not animation.up_to_date(film.with_suffix(f".{kind}"), experiment)
+            if experiment.name in only or (not only and outdated):
                 folders.append(folder)
+    if not folders and not films:
+        raise InputError(f"no result in {results} has a film; run first: dexrepro run")
     for folder in folders:
         out.print(str(animation.render(folder, values.get("case"), kind)), markup=False)
+    if not folders:
+        out.print(f"nothing to render: {len(films)} films are up to date")
     return OK
 
 
 def study_command(options: argparse.Namespace) -> int:
-    """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=200] [hours=H]``."""
+    """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=200] [hours=H] [jobs=N hydra/launcher=...]``."""
+    from concurrent.futures.process import BrokenProcessPool
+
     from dexrepro import study
     from dexrepro.config import InputError
 
+    if any(text.startswith(("jobs=", "hydra")) for text in options.selection):
+        return _study_jobs(options)
     numbers, results, only = _selected(options, ("claim", "samples", "hours"))
     values = dict(text.partition("=")[::2] for text in options.selection)
     try:
@@ -438,13 +462,56 @@ def study_command(options: argparse.Namespace) -> int:
         raise InputError("samples must be a whole number and hours a number") from error
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
-            path = study.run(number, name, samples, results, workers=options.workers, hours=hours)
-            out.print(f"{name}: {path}", markup=False)
-            for claim, row in study.read_json(path)["claims"].items():
-                interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
-                most = f", follows {row['parameter']} most" if row["parameter"] else ""
-                out.print(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}){most}", markup=False)
+            try:
+                path = study.run(number, name, samples, results, workers=options.workers, hours=hours)
+            except BrokenProcessPool:
+                err.print("a process of the study was killed; the same command completes what is missing", markup=False)
+                return FAILED
+            _print_study(name, path, results)
     return OK
+
+
+def _study_jobs(options: argparse.Namespace) -> int:
+    """A study by jobs of a Hydra launcher, which share its samples."""
+    from dexrepro import study
+    from dexrepro.config import InputError
+
+    values = dict(text.partition("=")[::2] for text in options.selection)
+    jobs = values.pop("jobs", "")
+    if not jobs.isdigit() or int(jobs) < 1:
+        raise InputError(f"jobs = {jobs or 'null'} is not allowed: it must be a whole number of 1 or greater")
+    launcher = [f"{key}={value}" for key, value in values.items() if key.startswith("hydra")]
+    options.selection = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
+    numbers, folder, only = _selected(options, ("claim", "samples", "hours"))
+    names = [name for number in numbers for name in study.experiments_of(number, only, values.get("claim"))]
+    selection = ",".join(json.dumps(text) for text in options.selection)
+    results = [text for text in options.selection if text.startswith("results=")]
+    status = _launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
+    for name in names:
+        if study.summary_file(name).exists():
+            _print_study(name, study.summary_file(name), folder)
+    return status
+
+
+def _study_job(config: Any) -> None:
+    from dexrepro.sweep import JobFailed, enter_launch_folder
+
+    enter_launch_folder()
+    if study_command(argparse.Namespace(selection=["workers=1", *config.selection])) != OK:
+        raise JobFailed("a process was killed; the same command completes what is missing")
+
+
+def _print_study(name: str, path: Path, results: Path) -> None:
+    from dexrepro.report import studies
+    from dexrepro.storage import read_json
+
+    summary = read_json(path)
+    drawing = studies.save(summary, results / "study" / f"{name}.svg")
+    out.print(f"{name}: {path}, drawn in {drawing}", markup=False)
+    for claim, row in summary["claims"].items():
+        interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
+        most = f", follows {row['parameter']} most" if row["parameter"] else ""
+        out.print(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}){most}", markup=False)
 
 
 def diff_command(options: argparse.Namespace) -> int:

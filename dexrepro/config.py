@@ -2,9 +2,11 @@
 
 Provenance: each leaf of conf/chapter/N.yaml says on its line where it comes from, in one grammar::
 
-    stiffness: 45   # N/m | printed 2.4.1.1
+    stiffness: 45   # k_o [N/m] | printed 2.4.1.1
     rest_length: 0.55   # m | chosen: equals the printed initial estimate | 0.5..0.65
     rate: 30   # 1/s | derived: sqrt of stiffness over mass
+
+The book's symbol, where it has one, stands before the unit, which is then in brackets.
 """
 
 from __future__ import annotations
@@ -56,18 +58,23 @@ def nearest(name: str, valid: Iterable[str]) -> str:
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a parameter comes from: unit, kind (printed, chosen or derived), text, and the range worth varying."""
+    """Where a parameter comes from: unit, kind (printed, chosen or derived), text, and the range worth varying.
+
+    symbol: the book's, in plain letters: ``lambda_1``, ``khat_o(0)``, ``rho_{1,0}``; None where it has none.
+    """
 
     unit: str
     kind: str
     text: str
     low: float | None = None
     high: float | None = None
+    symbol: str | None = None
 
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _COMMENT = re.compile(
-    rf"^(?P<unit>[^|]*?)\s*\|\s*(?P<kind>printed|chosen|derived)\b:?\s*(?P<text>[^|]*?)\s*"
+    r"^(?:(?P<symbol>[^|\[]+?)\s*\[)?(?P<unit>[^|\]]*?)\]?\s*"
+    r"\|\s*(?P<kind>printed|chosen|derived)\b:?\s*(?P<text>[^|]*?)\s*"
     rf"(?:\|\s*(?P<low>{_NUMBER})\s*\.\.\s*(?P<high>{_NUMBER})\s*)?$"
 )
 _LINE = re.compile(r"^(?P<indent> *)(?P<key>[\w.\-]+|'[^']+'|\"[^\"]+\"):(?:\s+(?P<rest>.*))?$")
@@ -85,6 +92,7 @@ def parse_provenance(comment: str) -> Provenance | None:
         match["text"],
         float(low) if low else None,
         float(high) if high else None,
+        match["symbol"],
     )
 
 

@@ -92,6 +92,25 @@ class Figure:
 
 
 @dataclass(frozen=True)
+class Film:
+    """An animation of one case: the arms, and beside them a measured quantity over time.
+
+    caption: what is seen, in one sentence. channel: what is drawn, times ``scale`` in the unit of ``label``; of a
+    vector its length. camera: a ``physics.rendering.Camera``. reference: a value to compare with, dashed.
+    span: the part of the run shown, (start, end) [s]; all of it by default.
+    """
+
+    case: str
+    caption: str
+    camera: Any
+    channel: str
+    label: str
+    scale: float = 1.0
+    reference: float | None = None
+    span: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
 class Experiment:
     """One section's simulations. All functions but ``simulate`` and ``measure`` are optional.
 
@@ -104,6 +123,8 @@ class Experiment:
         cases are missing is left out.
     tabulate(recordings, metrics, config) -> {table id: DataFrame}: likewise.
     scene(config) -> World: the scene without its laws, so that any recorded instant can be rendered.
+    stage(world, recording, config) -> Recording: for a film, adds what is only seen to the scene and returns channels
+        under the names that ``World.snapshot`` reads.
     """
 
     name: str
@@ -113,6 +134,7 @@ class Experiment:
     rate: float
     module: ModuleType
     requires: tuple[str, ...]
+    film: Film | None = None
 
     @classmethod
     def of(cls, module: ModuleType) -> Experiment:
@@ -125,6 +147,7 @@ class Experiment:
             rate=getattr(module, "RATE", 100.0),
             module=module,
             requires=tuple(getattr(module, "REQUIRES", ())),
+            film=getattr(module, "FILM", None),
         )
 
     def has(self, function: str) -> bool:

@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
-import gc
 import glob
 import hashlib
 import importlib.util
 import json
-import multiprocessing
 import os
 import platform
 import re
 import shutil
-import signal
 import subprocess
 import sys
+import tempfile
 import time
 import traceback
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from functools import cache
@@ -45,8 +42,10 @@ from dexrepro.config import (
     resolved_block,
 )
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
+from dexrepro.pool import pool
 from dexrepro.progress import Progress, Silent
 from dexrepro.storage import (
+    claimed,
     finite,
     load_recording,
     locked,
@@ -60,7 +59,7 @@ from dexrepro.storage import (
 PACKAGES = ("numpy", "scipy", "pybullet", "pandas", "matplotlib", "hydra-core")
 NUMERICAL = ("numpy", "scipy", "pybullet")  # those whose version can change a number
 SUMMARY = "summary"  # stands for the numbers over several cases in nested metrics
-KEPT = 6  # cached results a case
+KEPT, RECENT = 6, 7 * 24 * 3600  # cached results a case: so many, and all of the last seconds (a sweep may need them)
 
 
 @dataclass(frozen=True)
@@ -228,9 +227,7 @@ def writable(results: Path) -> Path:
     """The results folder, made if needed. Raises InputError where nothing can be written."""
     try:
         (results / ".cache").mkdir(parents=True, exist_ok=True)
-        probe = results / ".cache" / f".probe-{os.getpid()}"
-        probe.touch()
-        probe.unlink()
+        tempfile.TemporaryFile(dir=results / ".cache").close()
     except OSError as error:
         raise InputError(f"results = {results} is not allowed: cannot write there ({error.strerror})") from error
     return results
@@ -249,7 +246,7 @@ def source_digest(chapter: str, with_report: bool = False) -> str:
         parts = path.relative_to(root).parts
         if parts[0] == "chapters" and len(parts) > 2 and parts[1] not in (chapter, f"chapter{chapter}"):
             continue
-        if parts[0] in ("cli.py", "baselines.py", "progress.py", "study.py", "scaffold.py") or (
+        if parts[0] in ("cli.py", "baselines.py", "progress.py", "study.py", "scaffold.py", "sweep.py") or (
             parts[0] == "report" and not with_report
         ):
             continue
@@ -328,6 +325,16 @@ def execute(job: Job) -> dict[str, Any]:
     return entry
 
 
+def complete(job: Job) -> dict[str, Any]:
+    """Execute a case unless another process has finished it meanwhile."""
+    folder = Path(job.folder)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with claimed(folder.parent, folder.name):
+        if (folder / "case.json").exists():
+            return dict(read_json(folder / "case.json")["entry"])
+        return execute(job)
+
+
 def assemble(plan: Plan) -> None:
     """Turn the cached cases of a plan into a result folder with metrics, claims, tables, figures and provenance."""
     experiment = chapters.load(plan.chapter).experiment(plan.experiment)
@@ -345,7 +352,17 @@ def assemble(plan: Plan) -> None:
         write_json(folder / "metrics.json", flat(experiment.name, nested))
         write_json(folder / "run.json", _run_entry(plan, {case: data["entry"] for case, data in cases.items()}))
         present(plan.chapter, experiment, folder)
+        _keep_animations(plan.folder, folder)
     _prune(plan)
+
+
+def _keep_animations(old: Path, new: Path) -> None:
+    """Take over what was rendered from recordings that are still the same (cached files keep their time)."""
+    for path in sorted(old.glob("animation/*")):
+        recording = new / "series" / f"{path.stem}.csv.gz"
+        if recording.exists() and recording.stat().st_mtime <= path.stat().st_mtime:
+            (new / "animation").mkdir(exist_ok=True)
+            _link(path, new / "animation" / path.name)
 
 
 def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config) -> None:
@@ -450,11 +467,11 @@ def _prune(plan: Plan) -> None:
         with locked(parent):
             entries = sorted(parent.glob(f"{job.case}-" + "?" * 16), key=lambda p: p.stat().st_mtime, reverse=True)
             for old in entries[KEPT:]:
-                if str(old) != job.folder:
+                if str(old) != job.folder and old.stat().st_mtime < time.time() - RECENT:
                     shutil.rmtree(old, ignore_errors=True)
 
 
-# ------------------------------------------------------------------------------------------------------------ pool
+# ------------------------------------------------------------------------------------------------------- scheduling
 
 
 def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progress: Progress | None = None) -> Outcome:
@@ -464,10 +481,11 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     waiting: dict[str, set[str]] = {}
     todo: list[Job] = []
     for plan in plans:
+        for parent in (Path(plan.jobs[0].folder).parent, plan.folder.parent):
+            remove_leftovers(parent)
         if not force and _up_to_date(plan):
             outcome.folders[plan.experiment] = plan.folder
             continue
-        remove_leftovers(Path(plan.jobs[0].folder).parent)
         missing = [job for job in plan.jobs if force or not (Path(job.folder) / "case.json").exists()]
         waiting[plan.experiment] = {job.case for job in missing}
         todo += missing
@@ -476,8 +494,10 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     by_name = {plan.experiment: plan for plan in plans}
     # An experiment of few cases has long ones: they begin, and the short ones of the others fill the gaps at the end.
     todo.sort(key=lambda job: len(by_name[job.experiment].jobs))
-    with _pool(workers or available_cores(), progress, in_process=any(job.gui for job in todo)) as submit:
-        pending: dict[Future[Any], Job | Plan] = {submit(execute, job): job for job in todo}
+    import dexrepro.report.style  # noqa: F401  imported once, before the processes fork
+
+    with pool(workers, progress.listen, in_process=any(job.gui for job in todo)) as submit:
+        pending: dict[Future[Any], Job | Plan] = {submit(execute if force else complete, job): job for job in todo}
         pending |= {submit(assemble, by_name[name]): by_name[name] for name, cases in waiting.items() if not cases}
         progress.begin(len(todo))
         while pending:
@@ -527,57 +547,6 @@ def _keep_traceback(task: Job | Plan, error: BaseException) -> None:
     name = task.case if isinstance(task, Job) else "assemble"
     with contextlib.suppress(OSError):
         (folder / f"{name}.error.txt").write_text("".join(traceback.format_exception(error)))
-
-
-def available_cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-@contextlib.contextmanager
-def _pool(workers: int, progress: Progress, in_process: bool) -> Iterator[Any]:
-    if in_process:
-        yield _run_here
-        return
-    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
-    queue = context.SimpleQueue()
-    progress.listen(queue)
-    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=begin_worker, initargs=(queue,))
-    try:
-        yield pool.submit
-    except BaseException:
-        for process in list(pool._processes.values()):
-            process.kill()
-        pool.shutdown(wait=False, cancel_futures=True)
-        raise
-    pool.shutdown()
-
-
-def _run_here(function: Any, argument: Any) -> Future[Any]:
-    future: Future[Any] = Future()
-    try:
-        future.set_result(function(argument))
-    except Exception as error:
-        future.set_exception(error)
-    return future
-
-
-_queue: Any = None
-
-
-def begin_worker(queue: Any) -> None:
-    """Leave Ctrl-C to the parent, die with it, use one BLAS thread, and report simulated time."""
-    from threadpoolctl import threadpool_limits
-
-    from dexrepro.physics.loop import Progress as Simulation
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)
-    threadpool_limits(1)
-    gc.freeze()  # what is imported stays; without this the collector walks all of it again and again
-    gc.set_threshold(20_000)
-    if queue is not None:
-        Simulation.report = staticmethod(lambda simulated, duration: queue.put((os.getpid(), simulated, duration)))
 
 
 def summary_rows(outcome: Outcome) -> list[dict[str, Any]]:

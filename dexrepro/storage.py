@@ -5,9 +5,11 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import gzip
+import hashlib
 import json
 import math
 import os
+import platform
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -24,7 +26,7 @@ from dexrepro.experiment import Recording
 def whole_folder(target: Path) -> Iterator[Path]:
     """A new folder that replaces ``target`` when the block ends well and leaves no trace when it does not."""
     target.parent.mkdir(parents=True, exist_ok=True)
-    folder = Path(tempfile.mkdtemp(prefix=f".{target.name}-{os.getpid()}-", dir=target.parent))
+    folder = Path(tempfile.mkdtemp(prefix=f".{target.name}-{_owner()}-", dir=target.parent))
     folder.chmod(0o755)
     try:
         yield folder
@@ -38,10 +40,16 @@ def whole_folder(target: Path) -> Iterator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def _owner() -> str:
+    """Process and machine: several machines may share a folder."""
+    return f"{os.getpid()}@{platform.node().replace('-', '_')}"
+
+
 def remove_leftovers(folder: Path) -> None:
-    """Delete the temporary folders of processes that no longer exist."""
-    for path in folder.glob(".*-*-*"):
-        pid = path.name.removesuffix("-old").rsplit("-", 2)[-2]
+    """Delete the temporary folders of processes of this machine that no longer exist."""
+    machine = _owner().partition("@")[2]
+    for path in folder.glob(f".*-*@{machine}-*"):
+        pid = path.name.removesuffix("-old").rsplit("-", 2)[-2].partition("@")[0]
         if path.is_dir() and pid.isdigit() and not Path(f"/proc/{pid}").exists() and Path("/proc/self").exists():
             shutil.rmtree(path, ignore_errors=True)
 
@@ -54,9 +62,25 @@ def locked(folder: Path) -> Iterator[None]:
         yield
 
 
+@contextlib.contextmanager
+def claimed(folder: Path, name: str, wait: bool = True) -> Iterator[bool]:
+    """Whether this process alone works on the thing of that name, among all that share the folder, on any machine.
+
+    The kernel frees a claim when its process dies. A process holds one at a time: closing the file ends them all.
+    """
+    position = int(hashlib.sha1(name.encode()).hexdigest()[:15], 16)
+    with open(folder / ".claims", "a") as file:
+        try:
+            fcntl.lockf(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB), 1, position)
+        except (BlockingIOError, PermissionError):
+            yield False
+        else:
+            yield True
+
+
 def write_json(path: Path, data: Any) -> None:
     """Write JSON in one move; numbers that are not finite become null."""
-    temporary = path.with_name(f".{path.name}-{os.getpid()}")
+    temporary = path.with_name(f".{path.name}-{_owner()}")
     temporary.write_text(json.dumps(finite(data), indent=1) + "\n")
     temporary.replace(path)
 

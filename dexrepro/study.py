@@ -1,7 +1,8 @@
 """How fragile is a claim? Vary what the book does not print, within the ranges declared in conf/, and count.
 
 A sample draws every ranged parameter of an experiment, and the seed, from its own generator; all claims of the
-experiment share it. Samples are kept one a line, so that a study goes on where it was stopped.
+experiment share it. Samples are kept one a line, so that a study goes on where it was stopped. The same study may be
+started any number of times, on any machine that shares the results folder: its processes share the samples.
 """
 
 from __future__ import annotations
@@ -11,7 +12,8 @@ import json
 import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -31,8 +33,9 @@ from dexrepro.config import (
     resolved_block,
 )
 from dexrepro.experiment import Claim, Config, Metrics
-from dexrepro.runner import available_cores, begin_worker, flat, generator, live, summarise
-from dexrepro.storage import finite, read_json, write_json
+from dexrepro.pool import pool
+from dexrepro.runner import flat, generator, live, summarise
+from dexrepro.storage import claimed, finite, locked, read_json, write_json
 
 
 def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list[str]:
@@ -47,6 +50,7 @@ def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list
     return [by_id[claim].experiment]
 
 
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the margin, in a summary
 _shipped = cache(compose_chapter)
 
 
@@ -141,19 +145,33 @@ def run(
     lines.parent.mkdir(parents=True, exist_ok=True)
     done = {entry["index"] for entry in _read(lines)}
     missing = [index for index in range(samples) if index not in done]
-    deadline = time.monotonic() + 3600 * hours if hours else float("inf")
-    count = workers or available_cores()
-    with ProcessPoolExecutor(count, initializer=begin_worker, initargs=(None,)) as pool, open(lines, "a") as file:
-        while missing and time.monotonic() < deadline:
-            batch, missing = missing[: 4 * count], missing[4 * count :]
-            for future in as_completed([pool.submit(evaluate, chapter, experiment, index) for index in batch]):
-                file.write(json.dumps(finite(future.result())) + "\n")
-                file.flush()
-    target = baseline_dir() / "study" / f"{experiment}.json"
+    deadline = time.time() + 3600 * hours if hours else float("inf")
+    with pool(workers) as submit:
+        for future in as_completed([submit(contribute, chapter, experiment, i, lines, deadline) for i in missing]):
+            future.result()
+    target = summary_file(experiment)
     target.parent.mkdir(parents=True, exist_ok=True)
-    entries = [entry for entry in _read(lines) if entry["index"] < samples]
-    write_json(target, summary(chapter, experiment, entries))
+    with locked(lines.parent):  # who ends last sees every sample
+        entries = [entry for entry in _read(lines) if entry["index"] < samples]
+        write_json(target, summary(chapter, experiment, entries))
     return target
+
+
+def contribute(chapter: str, experiment: str, index: int, lines: Path, deadline: float) -> None:
+    """Evaluate one sample and add its line, unless another process does or has done so, or it is too late."""
+    with claimed(lines.parent, f"{experiment}.{index}", wait=False) as mine:
+        if not mine or time.time() > deadline or any(entry["index"] == index for entry in _read(lines)):
+            return
+        line = json.dumps(finite(evaluate(chapter, experiment, index))) + "\n"
+        with locked(lines.parent), open(lines, "a+b") as file:
+            file.seek(max(file.tell() - 1, 0))
+            cut_short = file.read(1) not in (b"", b"\n")
+            file.write(b"\n" * cut_short + line.encode())
+
+
+def summary_file(experiment: str) -> Path:
+    """Where the summary of a study is kept."""
+    return baseline_dir() / "study" / f"{experiment}.json"
 
 
 def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -170,6 +188,7 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
         claims[claim.id] = {
             "samples": len(pairs), "holds": holds, "share": holds / len(pairs), "low": low, "high": high,
             "parameter": parameter, "correlation": correlation, "median_margin": float(np.median(margins)),
+            "quantiles": np.quantile(margins, QUANTILES).tolist(),
         }  # fmt: skip
     failed = sum(entry["error"] is not None for entry in entries)
     varied = {key: [o.low, o.high] for key, o in parameters(chapter, experiment).items()}
@@ -199,7 +218,7 @@ def _most_influential(margins: Any, values: Sequence[Mapping[str, float]]) -> tu
 def _read(path: Path) -> Iterator[dict[str, Any]]:
     if path.exists():
         for line in path.read_text().splitlines():
-            if line.endswith("}"):  # the last line may have been cut short
+            with suppress(ValueError):  # a line may have been cut short
                 yield json.loads(line)
 
 

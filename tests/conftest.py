@@ -32,6 +32,20 @@ def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
         del sys.modules[name]
 
 
+@pytest.fixture
+def toy_tree(tmp_path: Path) -> Path:
+    """A folder with a checkout whose only chapter is 90, for commands of a shell and the processes they start."""
+    package = tmp_path / "dexrepro"
+    (package / "chapters").mkdir(parents=True)
+    for path in (ROOT / "dexrepro").iterdir():
+        if path.name not in ("chapters", "__pycache__"):
+            (package / path.name).symlink_to(path)
+    (package / "chapters/__init__.py").symlink_to(ROOT / "dexrepro/chapters/__init__.py")
+    (package / "chapters/chapter90").symlink_to(TOY / "chapter90")
+    (tmp_path / "conf").symlink_to(TOY / "conf")
+    return tmp_path
+
+
 Shell = Callable[..., subprocess.CompletedProcess[str]]
 
 

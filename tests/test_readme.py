@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import re
 import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import ROOT, Shell
+from test_cli import SHORT
 
 from dexrepro import chapters
 from dexrepro.baselines import read
@@ -135,6 +138,28 @@ def test_every_command_is_understood(shell: Shell, command: str) -> None:
     expected = next((status for start, status in needs_results.items() if command.startswith(start)), 0)
     assert done.returncode == expected, done.stderr
     assert "Traceback" not in done.stderr
+
+
+SCALING = [line.partition(" #")[0].strip() for line in block("sh", "submitit_slurm").splitlines()]
+HAS_SLURM = shutil.which("sinfo") is not None and subprocess.run(["sinfo"], capture_output=True).returncode == 0
+
+
+@pytest.mark.parametrize("command", [command for command in SCALING if command.startswith("dexrepro run")])
+def test_every_launcher_runs_a_sweep(shell: Shell, tmp_path: Path, command: str) -> None:
+    if "launcher=ray" in command and importlib.util.find_spec("ray") is None:
+        pytest.skip("needs Ray (pip install dexrepro[ray])")
+    if "submitit_slurm" in command and not HAS_SLURM:
+        pytest.skip("needs a Slurm that runs (tests/slurm/single_node.sh brings one up)")
+    done = shell(command.replace("range(20)", "range(2)") + f" {SHORT}")
+    assert done.returncode == 0, done.stderr
+    assert len(list((tmp_path / "results/runs").glob("movement_estimation-*/metrics.json"))) == 2
+
+
+def test_the_script_for_slurm_runs_a_sweep_like_that_of_the_readme() -> None:
+    script = (ROOT / SCALING[-1]).read_text()
+    assert "dexrepro run -m" in script
+    assert "hydra/launcher=submitit_slurm" in script
+    assert subprocess.run(["bash", "-n", str(ROOT / SCALING[-1])], check=False).returncode == 0
 
 
 def test_the_table_counts_the_stored_verdicts() -> None:

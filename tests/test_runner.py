@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 import dexrepro
 from dexrepro.config import InputError
-from dexrepro.runner import generator, own_digest, plan_chapter, run_plans
+from dexrepro.runner import KEPT, complete, generator, own_digest, plan_chapter, run_plans
 from dexrepro.storage import Result
 
 
@@ -67,6 +68,17 @@ def test_a_changed_file_of_the_user_changes_the_key(tmp_path: Path, monkeypatch:
     assert own_digest(config) == keys[-1]
 
 
+def test_a_film_stays_while_its_recording_stays(toy: Path) -> None:
+    folder = run().folders["decay"]
+    (folder / "animation").mkdir()
+    (folder / "animation/plain.gif").touch()
+    (folder / "run.json").write_text("{}")  # as after a change of the drawing code
+    run()
+    assert (folder / "animation/plain.gif").exists()
+    run(force=True)
+    assert not (folder / "animation").exists()
+
+
 def test_an_override_leaves_the_results_of_the_book_alone(toy: Path) -> None:
     run()
     before = (toy / "results/chapter90/decay/metrics.json").read_bytes()
@@ -119,6 +131,26 @@ def test_a_killed_worker_is_named_and_the_next_run_completes_what_is_missing(toy
     assert not list((toy / "results").glob("runs/*"))
     assert not list((toy / "results/.cache/decay").glob(".halved*"))
     assert len(run().folders) == 1
+
+
+def test_old_cached_cases_are_dropped_but_none_that_a_sweep_may_still_need(toy: Path) -> None:
+    cache = toy / "results/.cache/decay"
+    others = [cache / f"plain-{number:016d}" for number in range(8)]
+    for path in others:
+        path.mkdir(parents=True)
+    run()
+    assert len(list(cache.glob("plain-*"))) == 9
+    for path in others:
+        os.utime(path, (0, 0))
+    run(force=True)
+    assert len(list(cache.glob("plain-*"))) == KEPT
+
+
+def test_a_case_that_another_process_has_finished_is_not_run_again(toy: Path) -> None:
+    plans, _ = plan_chapter("90")
+    job = plans[0].jobs[0]
+    entry = complete(job)
+    assert complete(job) == entry, "the very same wall time"
 
 
 def test_skipped_experiments_say_what_they_need(toy: Path) -> None:

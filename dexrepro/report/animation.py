@@ -11,25 +11,28 @@ from typing import Any
 import numpy as np
 import yaml
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
+from PIL import Image, ImageDraw, ImageFont
 
 from dexrepro import chapters
 from dexrepro.config import InputError, nearest
-from dexrepro.experiment import Config, Experiment, Recording
+from dexrepro.experiment import Config, Experiment, Film, Recording
+from dexrepro.physics import rendering
 from dexrepro.report import style
 from dexrepro.runner import live
 from dexrepro.storage import load_recording, read_json
 
-SIZE = (420, 340)
-FRAMES = 90  # at the most
+SIZE = (400, 330)
+FRAMES = 60  # at the most
 RATE = 12  # frames a second
+COLOURS = 96
+MARGIN = 24  # pixels above and below the line that marks the instant
 
 
 def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
-    """Write ``animation/<case>.<kind>`` into a result folder and return its path.
+    """Write ``animation/<case>.<kind>`` and a still ``<case>.png`` into a result folder; returns the animation's path.
 
-    The experiment's module may name ``CAMERA`` (how to look) and ``WATCHED`` (channel, label) (what is drawn
-    alongside). Raises InputError where there is no result, no scene, no such case, or no encoder for MP4.
+    The module's ``FILM`` says which case is shown, how it is looked at and what is drawn alongside; another case is
+    shown in the same way. Raises InputError where there is no result, no scene, no such case, or no encoder for MP4.
     """
     if not (folder / "run.json").exists():
         raise InputError(f"{folder} holds no result (no run.json)")
@@ -42,76 +45,107 @@ def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
     cases = run["cases"]
     if case is not None and case not in cases:
         raise InputError(f"unknown case '{case}' of {experiment.name}: {nearest(case, cases)}")
-    recording, chosen = _recording(folder, cases, case)
+    chosen = case or (experiment.film.case if experiment.film and experiment.film.case in cases else None)
+    recording, chosen = _recording(folder, experiment, [chosen] if chosen else list(cases))
     raw = yaml.safe_load((folder / "config.yaml").read_text())["cases"][chosen]
     target = folder / "animation" / f"{chosen}.{kind}"
     target.parent.mkdir(exist_ok=True)
     raw |= {"law": None} if "law" in raw else {}  # a scene needs none, and the user's may be in another folder
-    frames = _frames(experiment, live(raw), recording)
+    frames = list(_frames(experiment, live(raw), recording))
+    frames[len(frames) // 2].save(target.with_suffix(".png"), optimize=True)
     _write_gif(frames, target) if kind == "gif" else _write_mp4(frames, target)
     return target
 
 
-def _recording(folder: Path, cases: dict[str, Any], case: str | None) -> tuple[Recording, str]:
-    for name in [case] if case else cases:
+def film_of(folder: Path, experiment: Experiment) -> Path | None:
+    """Where the film that an experiment declares lies in its result folder, made or not; None without such a case."""
+    film = experiment.film
+    if film is None or not (folder / "series" / f"{film.case}.csv.gz").exists():
+        return None
+    return folder / "animation" / f"{film.case}.gif"
+
+
+def up_to_date(film: Path, experiment: Experiment) -> bool:
+    """Whether a film is younger than its recording and than the code that shows it, the chapter's included."""
+    code = [Path(__file__), Path(rendering.__file__), *Path(str(experiment.module.__file__)).parent.glob("*.py")]
+    sources = [film.parent.parent / "series" / f"{film.stem}.csv.gz", *code]
+    return film.exists() and film.stat().st_mtime >= max(path.stat().st_mtime for path in sources)
+
+
+def _recording(folder: Path, experiment: Experiment, cases: list[str]) -> tuple[Recording, str]:
+    staged = experiment.has("stage")
+    for name in cases:
         recording = load_recording(folder / "series", name)
-        if any(channel.endswith(".position") for channel in recording.series):
+        if recording.series and (staged or any(channel.endswith(".position") for channel in recording.series)):
             return recording, name
     raise InputError(f"no case in {folder} has recorded an arm")
 
 
 def _frames(experiment: Experiment, config: Config, recording: Recording) -> Iterator[Image.Image]:
-    from dexrepro.physics.rendering import Camera
-
-    camera = getattr(experiment.module, "CAMERA", Camera())
-    channel, label = getattr(experiment.module, "WATCHED", (None, "")) or (None, "")
-    instants = np.linspace(recording.time[0], recording.time[-1], min(FRAMES, len(recording.time)))
-    plot, left, right = _plot(recording, channel, label)
+    film = experiment.film
+    camera = film.camera if film else rendering.Camera()
+    font = ImageFont.load_default(15)
     with experiment.module.scene(config) as world:
+        if experiment.has("stage"):
+            recording = experiment.module.stage(world, recording, config)
+        start, end = (film.span if film else None) or (recording.time[0], recording.time[-1])
+        shown = recording.time[recording.between(start, end)]
+        instants = shown[np.unique(np.linspace(0, len(shown) - 1, FRAMES).round().astype(int))]
+        plots = _plots(film, recording, shown) if film and film.channel in recording else None
         for instant in instants:
             picture = Image.fromarray(world.snapshot(recording, instant, camera, SIZE))
-            ImageDraw.Draw(picture).text((8, 6), f"t = {instant:.1f} s", fill=(20, 20, 20))
-            if plot is None:
-                yield picture
-                continue
-            frame = Image.new("RGB", (SIZE[0] + plot.width, SIZE[1]), "white")
-            frame.paste(picture, (0, 0))
-            frame.paste(plot, (SIZE[0], 0))
-            share = (instant - instants[0]) / (instants[-1] - instants[0] or 1)
-            x = SIZE[0] + left + share * (right - left)
-            ImageDraw.Draw(frame).line([(x, 30), (x, SIZE[1] - 45)], fill=(213, 94, 0), width=2)
-            yield frame
+            ImageDraw.Draw(picture).text((10, 8), f"t = {instant:.1f} s", fill=(20, 20, 20), font=font)
+            yield _beside(picture, *plots, instant) if plots else picture
 
 
-def _plot(recording: Recording, channel: str | None, label: str) -> tuple[Image.Image | None, float, float]:
-    """The watched quantity over time as a picture, and the columns of its first and last instant."""
-    if channel is None or channel not in recording:
-        return None, 0, 0
-    values = recording[channel]
+def _beside(picture: Image.Image, past: Image.Image, future: Image.Image, column: Any, instant: float) -> Image.Image:
+    """The scene, and the plot whose part up to the instant is coloured."""
+    x = round(column(instant))
+    frame = Image.new("RGB", (picture.width + past.width, picture.height), "white")
+    frame.paste(picture, (0, 0))
+    frame.paste(future, (picture.width, 0))
+    frame.paste(past.crop((0, 0, x, past.height)), (picture.width, 0))
+    line = [(picture.width + x, MARGIN), (picture.width + x, picture.height - 2 * MARGIN)]
+    ImageDraw.Draw(frame).line(line, fill=(120, 120, 120), width=1)
+    return frame
+
+
+def _plots(film: Film, recording: Recording, shown: NDArray[np.float64]) -> tuple[Image.Image, Image.Image, Any]:
+    """The watched quantity over time, coloured and pale, and the function from an instant to its column."""
+    values = recording[film.channel]
+    values = film.scale * (np.linalg.norm(values, axis=1) if values.ndim > 1 else values)
+    inside = recording.between(shown[0], shown[-1])
+    pictures = []
     with style.style():
-        figure, axes = style.subplots(width=SIZE[0] / 100, height=SIZE[1] / 100, dpi=100)
-        axes.plot(recording.time, values, color=style.BOOK)
-        axes.set(xlabel="Time [s]", ylabel=label, xlim=(recording.time[0], recording.time[-1]))
-        figure.canvas.draw()
-        pixels: NDArray[np.uint8] = np.asarray(figure.canvas.buffer_rgba())[:, :, :3].copy()
-        left, right = (axes.transData.transform((t, 0))[0] for t in axes.get_xlim())
+        figure, axes = style.subplots(width=SIZE[0] / 125, height=SIZE[1] / 125, dpi=125)
+        (curve,) = axes.plot(recording.time[inside], values[inside], linewidth=1.6)
+        if film.reference is not None:
+            axes.axhline(film.reference, **style.LINES["reference"])
+        axes.set(xlabel="Time [s]", ylabel=film.label, xlim=(shown[0], shown[-1]))
+        axes.margins(y=0.12)
+        for colour in (style.BOOK, "#D5DCE2"):
+            curve.set_color(colour)
+            figure.canvas.draw()
+            pixels: NDArray[np.uint8] = np.asarray(figure.canvas.buffer_rgba())[:, :, :3].copy()
+            pictures.append(Image.fromarray(pixels))
+        left, right = (axes.transData.transform((time, 0))[0] for time in (shown[0], shown[-1]))
         style.plt.close(figure)
-    return Image.fromarray(pixels), float(left), float(right)
+    return *pictures, lambda time: left + (right - left) * (time - shown[0]) / (shown[-1] - shown[0] or 1)  # type: ignore[return-value]
 
 
-def _write_gif(frames: Iterator[Image.Image], target: Path) -> None:
-    first, *rest = [frame.quantize(96) for frame in frames]
-    first.save(target, save_all=True, append_images=rest, duration=1000 // RATE, loop=0, optimize=True)
+def _write_gif(frames: list[Image.Image], target: Path) -> None:
+    palette = frames[len(frames) // 2].quantize(COLOURS, method=Image.Quantize.FASTOCTREE)
+    first, *rest = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    first.save(target, save_all=True, append_images=rest, duration=1000 // RATE, loop=0, optimize=False)
 
 
-def _write_mp4(frames: Iterator[Image.Image], target: Path) -> None:
-    first = next(frames)
-    size = f"{first.width}x{first.height}"
+def _write_mp4(frames: list[Image.Image], target: Path) -> None:
+    size = f"{frames[0].width}x{frames[0].height}"
     command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size,
                "-r", str(RATE), "-i", "-", "-pix_fmt", "yuv420p", str(target)]  # fmt: skip
     with subprocess.Popen(command, stdin=subprocess.PIPE) as encoder:
         assert encoder.stdin
-        for frame in (first, *frames):
+        for frame in frames:
             encoder.stdin.write(frame.tobytes())
         encoder.stdin.close()
         if encoder.wait():

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
+import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import jinja2
 import pandas as pd
+from markupsafe import Markup
 
 from dexrepro import __version__, chapters, study
-from dexrepro.config import compose_chapter, provenance, resolved_block
+from dexrepro.config import compose_chapter, provenance
 from dexrepro.experiment import (
     AFTER_CORRECTION,
     NOT_EVALUATED,
@@ -22,11 +25,12 @@ from dexrepro.experiment import (
     REPRODUCED,
     Experiment,
 )
-from dexrepro.report import equations
+from dexrepro.report import equations, parameters, studies, symbols
 from dexrepro.report.style import file_stem
 from dexrepro.storage import read_json, whole_folder
 
 VERDICTS = (REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED, NOT_TESTABLE)
+SCALE = 1.7  # pixels a point of a figure
 KINDS = {
     "error": "Inconsistent with the book's own equations: derived, with measured evidence.",
     "gap": "Something an implementation needs is not printed.",
@@ -49,20 +53,24 @@ class _Report:
         self.results, self.folder = results, folder
         loader = jinja2.PackageLoader("dexrepro.report", "templates")
         self.templates = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True)
+        self.templates.filters["breakable"] = _breakable
         self.search: list[dict[str, str]] = []
+        self.studies = {item["experiment"]: item for item in study.stored()}
 
     def write(self) -> None:
         book = [self._chapter(number) for number in chapters.numbers()]
         book = [chapter for chapter in book if chapter["experiments"]]
-        index, parameters = equations.index(), [p for c in book for e in c["experiments"] for p in e["parameters"]]
+        index = equations.index()
         for entry in index:
             text = f"Eq. ({entry['equation']}): {entry['name']}, {entry['file']}:{entry['line']}"
             self._searchable(text, f"equations.html#eq-{entry['equation']}")
+        self._search_parameters(book)
         common: dict[str, Any] = {"chapters": book, "provenance": self._provenance(book)}
         self._page("index", here="index", **common, **self._front(book))
         for chapter in book:
             self._page(f"chapter{chapter['number']}", "chapter", here=chapter["number"], chapter=chapter, **common)
-        self._page("equations", here="equations", equations=index, parameters=parameters, **common)
+        self._page("symbols", here="symbols", **common)
+        self._page("equations", here="equations", equations=index, **common)
         for name in ("style.css", "app.js"):
             shutil.copyfile(Path(__file__).parent / "templates" / name, self.folder / name)
         data = json.dumps(self.search, separators=(",", ":")).replace("<", "\\u003c")
@@ -74,6 +82,16 @@ class _Report:
 
     def _searchable(self, text: str, to: str) -> None:
         self.search.append({"text": text, "to": to})
+
+    def _search_parameters(self, book: list[dict[str, Any]]) -> None:
+        for chapter in book:
+            for item in chapter["symbols"]:
+                text = f"{symbols.text(item['plain'])}, chapter {chapter['number']}: {item['key']}"
+                self._searchable(text, f"symbols.html#symbol-{chapter['number']}-{item['key']}")
+        for chapter in book:
+            for item in (row for experiment in chapter["experiments"] for row in experiment["parameters"]):
+                value = textwrap.shorten(str(item["value"]), 40)
+                self._searchable(f"{item['key']} = {value}", f"chapter{chapter['number']}.html#key-{item['key']}")
 
     # ------------------------------------------------------------------------------------------------- the chapters
 
@@ -88,7 +106,7 @@ class _Report:
         experiments = []
         for experiment in made:
             entry = self._experiment(number, experiment, place / experiment.name)
-            entry["parameters"] = _parameters(experiment.name, composed, origins)
+            entry["parameters"] = parameters.table(experiment.name, composed, origins)
             entry["references"] = [
                 {**vars(item), "ours": metrics.get(item.metric)}
                 for item in chapter.references
@@ -100,12 +118,14 @@ class _Report:
             evidence = [(name, metrics.get(name)) for name in item.evidence]
             errata.append({**vars(item), "evidence": evidence})
             self._searchable(f"{item.id} {item.equation}: {item.summary}", f"chapter{number}.html#{item.id}")
+        rows = [row for entry in experiments for row in entry["parameters"]]
         untestable = [claim.evaluate({}) for claim in chapter.claims if claim.not_testable]
         runs = [run for run in self._own_runs() if run["chapter"] == number]
         return {
             "number": number,
             "title": chapter.title,
             "experiments": experiments,
+            "symbols": parameters.index(composed, origins, rows),
             "errata": errata,
             "untestable": untestable,
             "runs": runs,
@@ -137,10 +157,12 @@ class _Report:
                 for identifier, title in experiment.tables.items()
                 if (place / "tables" / f"{identifier}.csv").exists()
             ],
-            "animations": [
-                {"name": path.stem, "path": _copied(path, target, f"files/{experiment.name}")}
+            "films": [
+                self._film(path, experiment, target)
                 for path in sorted(place.glob("animation/*.gif"))
+                if path.with_suffix(".png").exists()
             ],
+            "study": self._study(experiment.name, target),
             "files": files,
             "run": run,
             "provenance": (
@@ -148,6 +170,25 @@ class _Report:
                 f"Python {run['python']}; {run['machine']}; {run['wall']:.1f} s of one core{factor}"
             ),
         }
+
+    def _film(self, path: Path, experiment: Experiment, target: Path) -> dict[str, str]:
+        for suffix in (".gif", ".png"):
+            _copy(path.with_suffix(suffix), target / f"film_{path.stem}{suffix}")
+        film, link = experiment.film, f"files/{target.name}/film_{path.stem}"
+        return {
+            "case": path.stem,
+            "caption": film.caption if film and film.case == path.stem else "The arms, from the recording.",
+            "alt": f"The simulated arms, and {film.label} over time" if film else "The simulated arms",
+            "gif": f"{link}.gif",
+            "still": f"{link}.png",
+        }
+
+    def _study(self, experiment: str, target: Path) -> dict[str, Any] | None:
+        found = self.studies.get(experiment)
+        if not found or not found["claims"]:
+            return None
+        path = studies.save(found, target / "study.svg")
+        return {**found, "svg": f"files/{target.name}/{path.name}", "finding": studies.finding(found)}
 
     def _figure(
         self, number: str, identifier: str, caption: str, alt: str, place: Path, target: Path, claims: list[Any]
@@ -162,6 +203,7 @@ class _Report:
             "caption": caption,
             "alt": alt or caption,
             "svg": f"files/{target.name}/{stem}.svg",
+            "width": _width(target / f"{stem}.svg"),
             "png": f"files/{target.name}/{stem}.png",
             "claims": [claim for claim in claims if _concerns(claim["figure"], identifier)],
         }
@@ -171,9 +213,15 @@ class _Report:
         _copy(path, target / path.name)
         (target / f"{identifier}.tex").write_text(frame.to_latex(index=False, float_format="%.4g", escape=True))
         self._searchable(f"Table {identifier}: {title}", f"chapter{number}.html#tab-{identifier}")
-        html = frame.to_html(index=False, float_format=lambda x: f"{x:.4g}", na_rep="–", border=0)
         base = f"files/{target.name}/{identifier}"
-        return {"id": identifier, "title": title, "html": html, "csv": f"{base}.csv", "tex": f"{base}.tex"}
+        return {
+            "id": identifier,
+            "title": title,
+            "columns": [(name, frame[name].dtype.kind in "if") for name in frame],
+            "rows": [[_cell(value) for value in row] for row in frame.astype(object).to_numpy().tolist()],
+            "csv": f"{base}.csv",
+            "tex": f"{base}.tex",
+        }
 
     def _own_runs(self) -> list[dict[str, Any]]:
         runs = []
@@ -204,7 +252,13 @@ class _Report:
             "totals": totals,
             "gallery": [figure for c in book for figure in _in_book_order(c)],
             "errata": errata,
-            "studies": [{"claim": claim, **row} for item in study.stored() for claim, row in item["claims"].items()],
+            "studies": [
+                {"claim": claim, "chapter": chapter["number"], **experiment["study"]["claims"][claim["id"]]}
+                for chapter in book
+                for experiment in chapter["experiments"]
+                for claim in experiment["claims"]
+                if experiment["study"] and claim["id"] in experiment["study"]["claims"]
+            ],
         }
 
     def _provenance(self, book: list[dict[str, Any]]) -> str:
@@ -244,50 +298,28 @@ def _in_book_order(chapter: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def _concerns(claimed: str, identifier: str) -> bool:
-    """Whether a claim about "2.8a" or "2.5, 2.6" is about the figure "2.8"."""
+    """Whether a claim about "2.8a" or "2.8, 2.9" is about the figure "2.8", and one about "2.8" about "2.8a"."""
     parts = [part.strip() for part in claimed.replace(";", ",").split(",")]
-    return any(part == identifier or part.rstrip("abcdefgh") == identifier.rstrip("abcdefgh") for part in parts)
+    panels = "abcdefgh"
+    return any(identifier in (part, part.rstrip(panels)) or identifier.rstrip(panels) == part for part in parts)
 
 
-def _parameters(experiment: str, composed: Mapping[str, Any], origins: Mapping[str, Any]) -> list[dict[str, Any]]:
-    rows = []
-    for key, value in _flat(resolved_block(composed, experiment), experiment):
-        origin = origins.get(key) or _origin_of_reference(key, composed, origins)
-        bounds = f"{origin.low:g} to {origin.high:g}" if origin and origin.low is not None else ""
-        rows.append(
-            {
-                "key": key,
-                "value": value,
-                "unit": origin.unit if origin else "",
-                "kind": origin.kind if origin else "",
-                "text": origin.text if origin else "",
-                "range": bounds,
-            }
-        )
-    return rows
+def _breakable(name: str) -> Markup:
+    """A dotted name that may be broken between its parts, and only there."""
+    return Markup("<wbr>").join(re.split(r"(?<=[._=,])(?=\w)", name))
 
 
-def _origin_of_reference(key: str, composed: Mapping[str, Any], origins: Mapping[str, Any]) -> Any:
-    node: Any = composed
-    for part in key.split("."):
-        node = node.get(part) if isinstance(node, Mapping) else None
-    text = node.strip("${} ") if isinstance(node, str) and node.startswith("${") else ""
-    return origins.get(text)
+def _width(svg: Path) -> int:
+    """How wide a figure is shown [pixels], so that its letters have one size whether it has one column or two."""
+    found = re.search(r'<svg[^>]*? width="([\d.]+)pt"', svg.read_text()[:2000])
+    return round(SCALE * float(found[1])) if found else 800
 
 
-def _flat(node: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
-    rows: list[tuple[str, Any]] = []
-    for key, value in node.items():
-        if isinstance(value, Mapping):
-            rows += _flat(value, f"{prefix}.{key}")
-        else:
-            rows.append((f"{prefix}.{key}", value))
-    return rows
-
-
-def _copied(source: Path, folder: Path, link: str) -> str:
-    _copy(source, folder / source.name)
-    return f"{link}/{source.name}"
+def _cell(value: Any) -> str:
+    """A table's entry, with a minus sign at which no line is broken."""
+    if pd.isna(value):
+        return "–"
+    return f"{value:.4g}".replace("-", "\u2212") if isinstance(value, float) else str(value)
 
 
 def _copy(source: Path, target: Path) -> None:

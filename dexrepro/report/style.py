@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,10 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 MM = 1 / 25.4
 ONE_COLUMN = 85 * MM  # inch
@@ -85,14 +88,25 @@ def subplots(
 
 
 def title(figure: Figure, text: str) -> None:
-    """The finding, above all panels, left-aligned, broken into lines that fit the width."""
-    text = textwrap.fill(text, int(figure.get_figwidth() / TITLE_CHARACTER))
-    figure.suptitle(text, x=0.01, ha="left", fontsize=9, fontweight="bold")
+    """The finding, above all panels, left-aligned, broken into lines of like length that fit the width."""
+    markup = len(text) - len(re.sub(r"[$\\_^{}]", "", text))
+    width = int(figure.get_figwidth() / TITLE_CHARACTER) + markup
+    lines = len(textwrap.wrap(text, width))
+    while lines > 1 and len(textwrap.wrap(text, width - 1)) == lines:
+        width -= 1
+    figure.suptitle(textwrap.fill(text, width), x=0.01, ha="left", fontsize=9, fontweight="bold")
 
 
 def panel(axes: Axes, letter: str, text: str = "") -> None:
     """Name a panel: (a), (b), ..."""
     axes.set_title(f"({letter}) {text}".rstrip())
+
+
+def trimmed(images: Mapping[Any, Any]) -> dict[Any, Any]:
+    """Pictures of one size without the white margin that all of them share."""
+    dark = np.any([np.asarray(image).min(axis=2) < 250 for image in images.values()], axis=0)
+    rows, columns = np.flatnonzero(dark.any(axis=1)), np.flatnonzero(dark.any(axis=0))
+    return {name: image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] for name, image in images.items()}
 
 
 def event(axes: Axes, time: float, word: str) -> None:
@@ -144,6 +158,12 @@ def label_end(axes: Axes, line: Any, text: str, dy: float = 0) -> None:
         va="center",
         annotation_clip=False,
     )
+
+
+def legend_below(figure: Figure, lines: Mapping[str, Mapping[str, Any]]) -> None:
+    """A legend below all panels, from names and what their lines look like."""
+    handles = [Line2D([], [], label=name, **look) for name, look in lines.items()]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(lines))
 
 
 def file_stem(figure_id: str) -> str:

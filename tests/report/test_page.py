@@ -11,6 +11,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from dexrepro.report import equations, page
 from dexrepro.runner import plan_chapter, run_plans
@@ -22,6 +23,10 @@ BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil
 def report(toy: Path) -> Path:
     plans, _ = plan_chapter("90")
     run_plans(plans, workers=1, force=False)
+    films = Path("results/chapter90/decay/animation")
+    films.mkdir()
+    for name in ("plain.gif", "plain.png"):
+        Image.new("RGB", (80, 33), "white").save(films / name)
     return page.build(Path("results")).parent
 
 
@@ -61,6 +66,33 @@ def test_the_scoreboard_counts_the_verdicts(report: Path) -> None:
     assert re.findall(r"<td>(.*?)</td>", row) == ["2", "", "1", "", "", "0 of 0"]
 
 
+@pytest.mark.parametrize(
+    ("claimed", "figure", "expected"),
+    [
+        ("2.8a", "2.8", True),
+        ("2.8", "2.8a", True),
+        ("2.5, 2.8", "2.8", True),
+        ("2.8a", "2.8b", False),
+        ("2.8", "2.81", False),
+    ],
+)
+def test_a_claim_stands_beside_the_figures_it_is_about(claimed: str, figure: str, expected: bool) -> None:
+    assert page._concerns(claimed, figure) is expected
+
+
+def test_a_symbol_leads_to_its_parameter_and_back(report: Path) -> None:
+    chapter, index = ((report / name).read_text() for name in ("chapter90.html", "symbols.html"))
+    assert '<a href="symbols.html#symbol-90-shared.rate"><i>λ</i><sub>1</sub></a>' in chapter
+    assert '<a href="chapter90.html#key-decay.rate">decay</a>' in index
+    assert "lambda_1" in (report / "search-index.js").read_text()
+
+
+def test_a_film_is_a_still_that_leads_to_the_moving_picture(report: Path) -> None:
+    text = (report / "chapter90.html").read_text()
+    assert '<a href="files/decay/film_plain.gif"><img src="files/decay/film_plain.png"' in text
+    assert (report / "files/decay/film_plain.gif").exists()
+
+
 def test_text_from_configurations_is_escaped(toy: Path) -> None:
     plans, _ = plan_chapter("90")
     plans[0].block["note"] = "<script>alert(1)</script>"
@@ -95,18 +127,22 @@ def test_in_a_real_browser(report: Path, tmp_path: Path) -> None:
       box.value = 'nothing grows';
       box.dispatchEvent(new Event('input'));
       const hit = document.querySelector('#found a');
+      const film = document.querySelector('figure.film');
+      const sources = film && [film.querySelector('img').getAttribute('src')];
+      if (film) { film.querySelector('button').click(); sources.push(film.querySelector('img').getAttribute('src')); }
       const away = performance.getEntriesByType('resource').filter((r) => !r.name.startsWith('file:')).length;
-      const state = {broken, away, hit: hit && hit.getAttribute('href'), title: document.title};
+      const state = {broken, away, hit: hit && hit.getAttribute('href'), sources, title: document.title};
       const pre = document.createElement('pre'); pre.id = 'probe'; pre.textContent = JSON.stringify(state);
       document.body.append(pre);
     }, 300));
     </script>"""
-    for name in ("index.html", "chapter90.html", "equations.html"):
+    for name in ("index.html", "chapter90.html", "symbols.html", "equations.html"):
         text = (report / name).read_text().replace('loading="lazy"', "").replace("<head>", f"<head>{probe}")
         (report / f"probe-{name}").write_text(text)
-        flags = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking"
+        flags = "--headless --no-sandbox --force-prefers-reduced-motion --disable-gpu --no-first-run"
         command = [BROWSER, *flags.split(), "--disable-component-update", "--disable-sync", "--dump-dom",
-                   "--enable-logging=stderr", "--virtual-time-budget=4000", f"--user-data-dir={tmp_path / 'profile'}",
+                   "--disable-background-networking", "--enable-logging=stderr", "--virtual-time-budget=4000",
+                   f"--user-data-dir={tmp_path / 'profile'}",
                    (report / f"probe-{name}").resolve().as_uri()]  # fmt: skip
         done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
         found = re.search(r'<pre id="probe">(.*?)</pre>', done.stdout)
@@ -115,4 +151,6 @@ def test_in_a_real_browser(report: Path, tmp_path: Path) -> None:
         assert not state["title"].startswith("ERROR"), state
         assert (state["broken"], state["away"]) == (0, 0), state
         assert state["hit"] == "chapter90.html#C90.02", state
+        still, moving = (f"files/decay/film_plain.{kind}" for kind in ("png", "gif"))
+        assert state["sources"] == ([still, moving] if name == "chapter90.html" else None), "plays when asked to"
         assert "CONSOLE" not in done.stderr, done.stderr[-2000:]

@@ -177,14 +177,14 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     if "c1_proposed" in recordings:
         figures["1.9"] = _draw_arms(recordings["c1_proposed"], config)
     if all(f"{case}_{law}" in recordings for case in CASES for law in ROLES):
-        figures["1.10"] = _draw_errors(recordings)
+        figures["1.10"] = _draw_errors(recordings, metrics)
     return figures
 
 
 def _draw_arms(recording: Recording, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(1, 4, height=2.3, sharex=True, sharey=True)
+    figure, axes = style.subplots(1, 4, height=1.95, sharex=True, sharey=True)
     chains = [PlanarChain(config.arm.lengths, config.arm.masses, tuple(base)) for base in config.bases.values()]
     for axis, instant in zip(axes, np.linspace(0, recording.time[-1], 4)):
         joints = recording["joints"][np.argmin(np.abs(recording.time - instant))]
@@ -198,19 +198,19 @@ def _draw_arms(recording: Recording, config: Config) -> Any:
         axis.plot(*zip(*ends), color=style.RIVAL, linestyle=(0, (1, 0.6)), linewidth=3)
         axis.set_title(f"{instant:.0f} s, {1e3 * abs(ends[1][0] - ends[0][0]):.0f} mm apart")
         axis.set_aspect("equal")
-        axis.set(xlim=(-0.35, 0.95), ylim=(-0.05, 0.9), xticks=(0.0, 0.5))
+        axis.set(xlim=(-0.35, 0.95), ylim=(-0.1, 0.85), xticks=(0.0, 0.5))
         axis.set_xlabel("x [m]")
     axes[0].set_ylabel("y [m]")
-    axes[0].annotate("DFR", (0.0, 0.05), fontsize=7, color=style.EXTRA[0], ha="right")
-    axes[0].annotate("AFR", (0.52, 0.05), fontsize=7, color=style.BOOK)
+    axes[0].annotate("DFR", (-0.05, -0.03), fontsize=7, color=style.EXTRA[0], ha="right")
+    axes[0].annotate("AFR", (0.56, -0.03), fontsize=7, color=style.BOOK)
     style.title(figure, "The follower (blue) keeps squeezing the object while its partner (green) moves right")
     return figure
 
 
-def _draw_errors(recordings: dict[str, Recording]) -> Any:
+def _draw_errors(recordings: dict[str, Recording], metrics: Any) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(4, 3, height=6.4, sharex=True, sharey="row")
+    figure, axes = style.subplots(4, 3, height=6.6, sharex=True, sharey="row")
     for column, case in enumerate(CASES):
         for law, role in ROLES.items():
             recording = recordings[f"{case}_{law}"]
@@ -236,9 +236,23 @@ def _draw_errors(recordings: dict[str, Recording]) -> Any:
     for row, text in enumerate(("Force error [N]", "after 5 s [N]", "Position [mm]", "Lyapunov $V$ [-]")):
         axes[row, 0].set_ylabel(text)
     axes[0, 0].legend(loc="lower right")
-    axes[2, 2].legend(loc="lower left", ncols=2)
-    style.title(figure, "The proposed law keeps the smallest force error in all three cases")
+    handles = [*axes[2, 0].get_lines(), *twin.get_lines()]
+    axes[2, 0].legend(handles, [line.get_label() for line in handles], loc="lower right", ncols=3)
+    best = sum(
+        metrics[f"{case}_proposed"]["rmse"]
+        < min(metrics[f"{case}_{law}"]["rmse"] for law in ROLES if law != "proposed")
+        for case in CASES
+    )
+    style.title(figure, f"The proposed law keeps the smallest force error in {best} of {len(CASES)} cases")
     return figure
+
+
+COLUMNS = {
+    "rmse": "RMSE [N]",
+    "rmse_late": f"RMSE after {LATE:g} s [N]",
+    "iae": "integral of the error [N s]",
+    "settling": "settling [s]",
+}
 
 
 def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
@@ -248,7 +262,6 @@ def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> 
         row: dict[str, Any] = {"law": law.replace("_", " ")}
         for case in CASES:
             values = metrics.get(f"{case}_{law}", {})
-            row |= {f"{case} {key} [{unit}]": values.get(key) for key, unit in
-                    (("rmse", "N"), ("rmse_late", "N"), ("iae", "N s"), ("settling", "s"))}  # fmt: skip
+            row |= {f"{case} {text}": values.get(key) for key, text in COLUMNS.items()}
         rows.append(row)
     return {"T1.A": pd.DataFrame(rows)}

@@ -128,12 +128,17 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
                              linewidth=0.7)  # fmt: skip
         axes[1, column].set(xlabel="Time [s]", yticks=(0, 1), yticklabels=("field", "force law"))
         times = metrics[case]["switches"]
-        axes[0, column].set_title(f"{'Latch' if case == 'latched' else 'Bare comparison'}: {times} switch(es)")
+        word = "Latch" if case == "latched" else "Bare comparison"
+        axes[0, column].set_title(f"{word}: {times} switch{'' if times == 1 else 'es'}")
     axes[0, 0].set_ylabel("Contact force [N]")
+    axes[0, 0].set_ylim(-0.15, 3.4)
     axes[0, 0].legend(loc="upper left", ncols=2)
     style.title(figure, "A latch hands over once where a bare comparison chatters")
     return {"1.C": figure}
 
 
 def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
-    return {"T1.G": pd.DataFrame([{"case": case.replace("_", " "), **metrics[case]} for case in recordings])}
+    table = pd.DataFrame([{"case": case.replace("_", " "), **metrics[case]} for case in recordings])
+    names = {"contact": "contact after [s]", "holding_at_end": "holding at the end", "rmse": "RMS force error [N]",
+             "bias": "mean force error [N]"}  # fmt: skip
+    return {"T1.G": table.rename(columns=names)}

@@ -18,7 +18,7 @@ from scipy import signal
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
@@ -55,6 +55,10 @@ RATE = 50.0
 SIDES = {"leader": "right", "follower": "left"}
 LEVEL = np.stack([(0.0, 0.0, -1.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], axis=1)  # R_D while the line is level
 VIEW = Camera(target=(0.5, 0.0, 0.3), distance=1.45, yaw=75.0, pitch=-18.0)
+FILM = Film(
+    "t1_proposed", "Two arms lift the ball, tilt and swing it and put it down while the force stays at 15 N.", VIEW,
+    "force", "Contact force [N]", reference=15.0,
+)  # fmt: skip
 LAWS = {"proposed": "book", "passive": "rival", "fixed": "plain"}
 PRINTED = {  # RMS force error [N], Section 1.5.2.2: proposed, impedance, fixed distance
     "t1": (0.87, 1.22, 2.48),
@@ -86,6 +90,16 @@ def scene(config: Config, rng: Any = None) -> World:
     x, y, z = middle(config)
     world.add_box("table", (0.5, 1.2, 0.04), (x + 0.05, y, z - radius - 0.02), colour=TABLE)
     return world
+
+
+def joint_channels(joints: Any) -> dict[str, Any]:
+    """Joint angles (n, 14) [rad] of both arms as the channels of the World."""
+    return {f"{name}.position": joints[:, 7 * k : 7 * (k + 1)] for k, name in enumerate(SIDES)}
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    channels = {"time": recording.time, "object.pose": recording["object"], "force": recording["force"]}
+    return Recording(channels | joint_channels(recording["joints"]))
 
 
 def simulate(config: Config, rng: Any) -> Recording:
@@ -248,7 +262,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
 def _draw_forces(recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(2, 3, height=3.6, sharey="row")
+    figure, axes = style.subplots(2, 3, height=3.8, sharey="row")
     for column, trial in enumerate(PRINTED):
         for law, role in reversed(LAWS.items()):
             recording = recordings[f"{trial}_{law}"]
@@ -259,12 +273,12 @@ def _draw_forces(recordings: dict[str, Recording], metrics: Any, config: Config)
         axes[0, column].set_title("RMSE " + " / ".join(f"{value:.2f}" for value in numbers) + " N")
         for row in (0, 1):
             axes[row, column].axhline(config.desired_force, **style.LINES["reference"])
-        style.event(axes[0, column], config.settled, "8 s")
+        style.event(axes[0, column], config.settled, f"{config.settled:g} s")
         axes[0, column].set_ylim(0, 30)
         axes[1, column].set(xlabel="Time [s]", ylim=(0, 30))
     axes[0, 0].set_ylabel("Contact force [N]")
     axes[1, 0].set_ylabel("First 1.5 s [N]")
-    axes[0, 2].legend(loc="lower right", ncols=3, columnspacing=0.8, handlelength=1.4)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     best = all(
         metrics[f"{t}_proposed"]["rmse"] < min(metrics[f"{t}_{law}"]["rmse"] for law in ("passive", "fixed"))
         for t in PRINTED
@@ -281,8 +295,8 @@ def _draw_forces(recordings: dict[str, Recording], metrics: Any, config: Config)
 def _draw_scene(recording: Recording) -> Any:
     from dexrepro.report import style
 
-    figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.9)
-    axis.imshow(recording.images["b"])
+    figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
+    axis.imshow(style.trimmed(recording.images)["b"])
     axis.set_axis_off()
     style.title(figure, "Two simulated Baxter arms hold a soft object")
     return figure
@@ -292,11 +306,12 @@ def _draw_task(recording: Recording) -> Any:
     from dexrepro.report import style
 
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 6.0))
-    grid = figure.add_gridspec(4, 3, height_ratios=(1.5, 1.5, 0.8, 0.6))
+    grid = figure.add_gridspec(4, 3, height_ratios=(1.4, 1.4, 0.8, 0.6))
+    pictures = style.trimmed(recording.images)
     words = ("start", "on the left", "tilted", "swinging", "over the right", "pressed")
     for k, (name, word) in enumerate(zip("abcdef", words)):
         axis = figure.add_subplot(grid[k // 3, k % 3])
-        axis.imshow(recording.images[name])
+        axis.imshow(pictures[name])
         axis.set_axis_off()
         style.panel(axis, name, word)
     path, tilt = figure.add_subplot(grid[2, :]), figure.add_subplot(grid[3, :])

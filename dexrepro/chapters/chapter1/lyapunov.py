@@ -127,6 +127,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     right.legend(loc="upper right", ncols=3)
     share = 100 * (metrics["built"]["rising"] or 0)
     style.title(
-        figure, f"V falls at every step only if z_d is known; the law as built lets it rise {share:.0f} % of the time"
+        figure,
+        f"$V$ falls at every step only if $z_d$ is known; the law as built lets it rise {share:.0f} % of the time",
     )
     return {"1.D": figure}

@@ -16,9 +16,9 @@ import pandas as pd
 from scipy.spatial.transform import Rotation
 
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
-from dexrepro.chapters.chapter1.hold_and_move import BALL, FLIP, LEVEL, SIDES
+from dexrepro.chapters.chapter1.hold_and_move import BALL, FLIP, LEVEL, SIDES, joint_channels
 from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
@@ -46,6 +46,11 @@ TABLES = {"T1.E": "Potential field: adjustable weights and ablations"}
 RATE = 25.0
 SHAKEN, APPROACH, HOLD, PITCHED = 18.0, 24.0, 30.0, 38.0  # s, ends of the phases
 VIEW = Camera(target=(0.5, -0.06, 0.3), distance=1.45, yaw=75.0, pitch=-18.0)
+FILM = Film(
+    "adjustable", "The left arm follows the ball that a person moves, and comes to it when the right arm does; contact "
+    "is not simulated.", Camera(target=(0.5, -0.08, 0.27), distance=1.4, yaw=75.0, pitch=-18.0),
+    "clearance", "Distance to the ball [mm]", scale=1e3,
+)  # fmt: skip
 INSTANTS = {"a": 1.5, "b": 7.5, "c": 13.5, "d": 21.0, "e": 25.0, "f": 32.0, "g": 40.0}
 
 
@@ -83,6 +88,12 @@ def scene(config: Config) -> World:
         world.add_arm(name, arm, solve_pose(arm, posture(side), *starts[name]))
     world.add_sphere("object", config.radius, config.place, colour=BALL)
     return world
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    clearance = np.linalg.norm(recording["follower"] - recording["object"], axis=1) - config.radius
+    return Recording({"time": recording.time, "object.pose": recording["object"], "clearance": clearance}
+                     | joint_channels(recording["joints"]))  # fmt: skip
 
 
 def script(config: Config) -> dict[str, Any]:
@@ -246,7 +257,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
 def _draw_field(field: pd.DataFrame, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(1, 3, height=2.5, sharey=True)
+    figure, axes = style.subplots(1, 3, height=2.25, sharey=True)
     for axis, word, (_, part) in zip(axes, ("far", "near", "touching"), field.groupby("distance", sort=False)):
         y, z = np.unique(part["y"]), np.unique(part["z"])
         grid = {key: part[key].to_numpy().reshape(len(z), len(y)) for key in ("potential", "fy", "fz")}
@@ -261,7 +272,9 @@ def _draw_field(field: pd.DataFrame, config: Config) -> Any:
         for k in (1, 2, 3):
             place = part[f"p{k}y"].iloc[0], part[f"p{k}z"].iloc[0]
             axis.plot(*place, "k.", markersize=4)
-            axis.annotate(f"$P_{k}$", place, xytext=(2, 3), textcoords="offset points", fontsize=8)
+            below = k == 3
+            axis.annotate(f"$P_{k}$", place, xytext=(0, -3 if below else 3), textcoords="offset points", fontsize=8,
+                          ha="center", va="top" if below else "bottom")  # fmt: skip
         axis.set_aspect("equal")
         axis.set(xlabel="Along the holding line [m]", title=f"DFR {word}, {1e3 * part['distance'].iloc[0]:.0f} mm away",
                  xlim=(-0.2, 0.6))  # fmt: skip
@@ -284,10 +297,10 @@ def _draw_camera(recording: Recording, config: Config) -> Any:
     axis.plot(0, 0, "+", color="black", label="true centre")
     axis.plot(seen[:, 0], seen[:, 2], "o", markersize=2, color=style.BOOK, alpha=0.6, label="measured")
     axis.set_aspect("equal")
-    axis.set(xlabel="x [mm]", ylabel="z [mm]", xlim=(-170, 170), ylim=(-170, 190))
-    axis.legend(loc="lower center", ncols=3, bbox_to_anchor=(0.5, 0.93), handletextpad=0.3, columnspacing=0.8)
+    axis.set(xlabel="x [mm]", ylabel="z [mm]", xlim=(-170, 170), ylim=(-170, 170))
+    figure.legend(loc="outside lower center", ncols=3, handletextpad=0.3, columnspacing=0.8)
     offset = np.linalg.norm(seen.mean(axis=0)) if len(centre) else 0.0
-    style.title(figure, f"Camera: {offset:.0f} mm off centre")
+    style.title(figure, f"The camera sees the object {offset:.0f} mm off centre")
     return figure
 
 
@@ -295,10 +308,11 @@ def _draw_task(recording: Recording, config: Config) -> Any:
     from dexrepro.report import style
 
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 7.6))
-    grid = figure.add_gridspec(6, 7, height_ratios=(0.8, 1.1, 1.1, 0.8, 0.6, 0.8))
+    grid = figure.add_gridspec(6, 7, height_ratios=(0.55, 1.1, 1.1, 0.8, 0.6, 0.8))
+    pictures = style.trimmed(recording.images)
     for k, (name, at) in enumerate(INSTANTS.items()):
         axis = figure.add_subplot(grid[0, k])
-        axis.imshow(recording.images[name])
+        axis.imshow(pictures[name])
         axis.set_axis_off()
         axis.set_title(f"({name}) {at:g} s", fontsize=7)
     axes = [figure.add_subplot(grid[row, :]) for row in range(1, 6)]

@@ -157,7 +157,7 @@ def _draw_moves(moves: pd.DataFrame) -> Any:
             rows = moves[(moves["duration"] == duration) & (moves["form"] == form)]
             axis.plot(rows["time"], 1e3 * rows["tool"], label=f"{form}", **style.LINES[role])
         axis.plot(rows["time"], 1e3 * rows["hand"], label="hand", **style.LINES["reference"])
-        axis.set(xlabel="Time [s]", title=f"{duration:g} s")
+        axis.set(xlabel="Time [s]", title=f"{duration:g} s movement")
     axes[0].set_ylabel("Displacement [mm]")
     axes[0].legend(loc="upper left")
     style.title(figure, "Scaled step by step the tool stays where it went; scaled as a whole it is pulled back")
@@ -173,9 +173,12 @@ def _draw_triads(triads: Any) -> Any:
         for place, frame, name in ((0 * own[:, 2], own, "DFR"), (2.6 * own[:, 2], faced, "AFR")):
             for i, colour in enumerate((style.RIVAL, style.EXTRA[0], style.BOOK)):
                 axis.plot(*zip(place, place + frame[:, i]), color=colour, linewidth=2.4 if i == 2 else 1.2)
-            axis.text(*(place - 0.35 * own[:, 0]), name, fontsize=7)
+            away = place - 0.35 * frame.sum(axis=1)
+            axis.text(*away, name, fontsize=7, ha="center", va="center")
         axis.set_axis_off()
         axis.set_aspect("equal")
-        axis.set_title("x orange, y green, z blue" if k == 0 else "")
+    for name, colour in (("x", style.RIVAL), ("y", style.EXTRA[0]), ("z", style.BOOK)):
+        axis.plot([], [], color=colour, linewidth=2.4 if name == "z" else 1.2, label=f"{name} axis")
+    figure.legend(*axis.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     style.title(figure, "AFR always points at DFR, its x axis along DFR's")
     return figure

@@ -263,7 +263,10 @@ def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> 
     carrying = recordings["carrying"].frames["variants"].dropna(subset="gain").assign(figure="1.18")
     carrying["law"] = carrying["law"].str.split().str[1]
     columns = ["figure", "law", "gain", "rmse"]
-    return {"T1.S": pd.DataFrame(rows), "T1.H": pd.concat([tried[columns], carrying[columns]])}
+    return {
+        "T1.S": pd.DataFrame(rows),
+        "T1.H": pd.concat([tried[columns], carrying[columns]]).rename(columns={"rmse": "RMS force error [N]"}),
+    }
 
 
 def _flips(t: Metrics, c: Metrics) -> list[dict[str, Any]]:

@@ -18,7 +18,7 @@ from dexrepro.humans.operator import COMFORTABLE_ROLL, FOREARM_ROLL, Hand, Opera
 FIGURES = {
     "1.13": Figure(
         "General mapping, one synthetic operator: roll of the hand with the comfortable band and the range of the "
-        "forearm, and the tool's distance from the nut it works on. The book shows five photographs.",
+        "forearm, and the tool's distance from the nearer nut. The book shows five photographs.",
         "The hand stays far outside its comfortable range and the tool shakes by about a millimetre.",
     ),
     "1.14": Figure(
@@ -134,7 +134,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
 def _draw_history(recording: Recording, text: str, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(2, 1, height=3.0, sharex=True)
+    figure, axes = style.subplots(2, 1, height=3.2, sharex=True)
     time = recording.time
     comfort, limit = np.rad2deg(COMFORTABLE_ROLL), np.rad2deg(FOREARM_ROLL)
     style.band(axes[0], time[[0, -1]], -comfort, comfort)
@@ -142,13 +142,15 @@ def _draw_history(recording: Recording, text: str, config: Config) -> Any:
         axes[0].axhline(sign * limit, **style.LINES["reference"])
     axes[0].plot(time, np.rad2deg(recording["roll"]), label="hand", **style.LINES["book"])
     axes[0].plot(time, np.rad2deg(recording["tool_roll"]), label="tool", **style.LINES["rival"])
-    axes[0].set(ylabel="Roll [deg]", ylim=(-100, 260))
-    axes[0].annotate("comfortable", (0.0, -comfort), fontsize=6.5, va="bottom", color="#555555")
-    axes[0].annotate("range of the forearm", (0.0, -limit), fontsize=6.5, va="bottom", color="#555555")
+    axes[0].set(ylabel="Roll [deg]", ylim=(-110, 260), xlim=(0, time[-1]))
+    for word, height in (("comfortable", -comfort), ("range of the forearm", -limit)):
+        axes[0].annotate(word, (time[-1], height), xytext=(-3, 1), textcoords="offset points", fontsize=6.5, ha="right",
+                         va="bottom", color="#555555")  # fmt: skip
     axes[0].legend(loc="upper left", ncols=2)
     near = np.min(np.linalg.norm(recording["tool"][:, None] - nuts(config)[None], axis=2), axis=1)
     axes[1].semilogy(time, np.maximum(1e3 * near, 0.02), **style.LINES["book"])
-    axes[1].set(xlabel="Time [s]", ylabel="To the nearer nut [mm]", ylim=(0.1, 200))
+    axes[1].set(xlabel="Time [s]", ylabel="To a nut [mm]", ylim=(0.1, 200))
+    figure.align_ylabels(axes)
     style.title(figure, text)
     return figure
 

@@ -11,7 +11,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter2 import balloon_pair
 from dexrepro.chapters.chapter2.measures import Array, force_error, rms, shown
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 
 FIGURES = {
     "2.9c": Figure(
@@ -29,7 +29,11 @@ FIGURES = {
 TABLES = {"T2.2": "Force errors of the Baxter experiment: printed and tuned gains, two balloons"}
 RATE = 20.0
 
-scene = balloon_pair.scene
+scene, stage = balloon_pair.scene, balloon_pair.stage
+FILM = Film(
+    "proposed", "The follower, which feels only the force, holds the balloon along a line and two laps of a circle.",
+    balloon_pair.VIEW, "object.force", "Holding force [N]", reference=10.0,
+)  # fmt: skip
 
 
 def simulate(config: Config, rng: Any) -> Recording:
@@ -182,6 +186,6 @@ def _draw_result(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
     best = shown(metrics["proposed"]["rmse_circle"])
     style.title(
         figure,
-        f"The proposed law holds 10 N within {best:.2f} N rms on the circle (simulated Baxter, synthetic operator)",
+        f"The proposed law holds {config.desired_force:g} N within {best:.2f} N rms on the circle (simulated Baxter)",
     )
     return figure

@@ -14,6 +14,7 @@ from dexrepro.control.holding_line import HoldingLineRegulation
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm
@@ -28,6 +29,8 @@ FACING = {
     "left": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [-1.0, 0.0, 0.0]]),
 }
 RECORD_EVERY = 5  # steps
+BALLOON = (0.95, 0.55, 0.15, 1.0)
+VIEW = Camera(target=(0.42, 0.11, 0.2), distance=1.5, yaw=115.0, pitch=-15.0)
 ROLES = {"leader": "right", "follower": "left"}
 
 
@@ -52,6 +55,16 @@ def scene(config: Config, rng: Any = None) -> World:
     between = ("follower", "leader")
     world.add(Elastic("object", between, config.stiffness, config.rest_length, unilateral=True))
     return world
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    """Shows the balloon: on the leader's gripper until it is held, then between the two."""
+    leader, way = recording["leader.tip"], recording["follower.tip"] - recording["leader.tip"]
+    length = np.linalg.norm(way, axis=1, keepdims=True)
+    centre = leader + way / length * np.minimum(length, config.rest_length) / 2
+    world.add_sphere("balloon", config.rest_length / 2 - 0.03, centre[0], colour=BALLOON, collides=False)
+    recording.series |= {"balloon.pose": centre}
+    return recording
 
 
 def run(config: Config, rng: Any, path: Callable[[float], Array]) -> Recording:

@@ -9,7 +9,7 @@ import numpy as np
 
 from dexrepro.chapters.chapter2 import balloon_pair
 from dexrepro.chapters.chapter2.measures import last_outside, mean, rms
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.rendering import Camera
 
 FIGURES = {
@@ -28,7 +28,11 @@ FIGURES = {
 RATE = 50.0
 SETTLED = 20.0  # s
 
-scene = balloon_pair.scene
+scene, stage = balloon_pair.scene, balloon_pair.stage
+FILM = Film(
+    "off_100", "The follower touches the balloon 0.1 m off the line, finds the line and holds 10 N.", balloon_pair.VIEW,
+    "object.force", "Holding force [N]", reference=10.0,
+)  # fmt: skip
 
 
 def simulate(config: Config, rng: Any) -> Recording:

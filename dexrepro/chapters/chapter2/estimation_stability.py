@@ -134,19 +134,20 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         return {}
     from dexrepro.report import style
 
-    figure, (left, right) = style.subplots(1, 2, height=2.4)
+    figure, (left, right) = style.subplots(1, 2, height=2.6)
     for case, line in zip(growing, ("book", "rival", "extra1")):
         run, look = recordings[case], style.LINES[line]
         left.plot(run.time, np.abs(run["error"]), label=f"c = {config.cases[case].rate:g}", **look)
         left.axvline(metrics[case]["predicted_time"], color=look["color"], linewidth=0.6)
     left.set(yscale="log", ylim=(1e-4, 200), xlabel="Time [s]", ylabel="Prediction error [N]")
-    left.legend(loc="upper center", bbox_to_anchor=(0.4, 1.0))
+    left.axvline(np.nan, color=style.REFERENCE, linewidth=0.6, label="predicted instant")
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower left", ncols=4)
     style.panel(left, "a", "time from the start, equal rates")
     run = recordings["lyapunov"]
     fall = 1e3 * (run["lyapunov"][0] - run["lyapunov"])
     right.plot(run.time, fall, label="measured", **style.LINES["book"])
     right.plot(run.time, 1e3 * run["predicted_fall"], label="exact decrements, summed", **style.LINES["reference"])
-    right.set(xlabel="Time [s]", ylabel="V(0) - V [$10^{-3}$]")
+    right.set(xlabel="Time [s]", ylabel="$V(0) - V$ [$10^{-3}$]")
     right.legend()
     style.panel(right, "b", "constant parameters")
     worst = 100 * max(metrics[case]["relative_difference"] or 0.0 for case in growing)

@@ -123,10 +123,11 @@ def _alike(one: Config, other: Config) -> bool:
 def _draw_histories(recordings: Any, metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, grid = style.subplots(4, 2, height=6.6, width_ratios=(3, 1))
+    figure, grid = style.subplots(4, 2, height=6.9, width_ratios=(3, 1))
     groups = {"a": range(1, 3), "a ": range(3, 9), "b": range(9, 15), "c": range(15, 19)}
     limits = {"a": (-0.2, 6), "a ": (0.6, 1.6), "b": (0.6, 1.6), "c": (2, 10)}
-    texts = {"a": "s1, s2: force control", "a ": "s3 to s8, Traj. 1", "b": "s9 to s14, Traj. 2", "c": "s15 to s18, 7 N"}
+    texts = {"a": "s1, s2: force control, Traj. 1", "a ": "s3 to s8, Traj. 1", "b": "s9 to s14, Traj. 2"}
+    texts["c"] = f"s15 to s18, {config.cases['s15'].desired_force:g} N"
     for (histories, bars), (letter, numbers) in zip(grid, groups.items()):
         cases = [f"s{n}" for n in numbers]
         like = config.cases[cases[0]]
@@ -144,7 +145,9 @@ def _draw_histories(recordings: Any, metrics: Any, config: Config) -> Any:
         histories.legend(loc="upper right", ncols=4)
         bars.set(xscale="log", xlim=(1e-3, 5))
         bars.invert_yaxis()
-    grid[0, 1].set_title("RMSE, 20 to 40 s")
+        bars.set_title("RMSE, 20 to 40 s")
+    looks = {"with (2.8), bars full": "-", "without (2.8), bars pale": (0, (4, 2))}
+    style.legend_below(figure, {name: {"color": style.REFERENCE, "linestyle": line} for name, line in looks.items()})
     grid[-1, 0].set_xlabel("Time [s]")
     grid[-1, 1].set_xlabel("RMSE [N]")
     worst = 100 * max(
@@ -177,7 +180,7 @@ def _draw_settings(metrics: Any, config: Config) -> Any:
     left.set(ylabel="Force RMSE [mN]", yscale="log")
     left.set_ylim(0.3, 60)
     left.legend(ncols=2, loc="upper right")
-    style.panel(left, "a", "Traj. 1, 1 N")
+    style.panel(left, "a", f"Traj. 1, {config.cases['s5'].desired_force:g} N")
     for trajectory, marker, colour in ((1, "o", style.REFERENCE), (2, "s", style.PLAIN)):
         cases = [case for case in tuned if config.cases[case].leader.trajectory == trajectory]
         names = [_name(case, config.cases[case]) for case in cases]

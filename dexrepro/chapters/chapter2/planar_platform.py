@@ -119,5 +119,10 @@ def _draw_platform(arms: pd.DataFrame, paths: pd.DataFrame) -> Any:
             )
         panel.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", xlim=(-0.25, 0.25), ylim=(-0.25, 0.25))
         style.panel(panel, letter, f"Traj. {trajectory}")
-    style.title(figure, "Two planar arms half a metre apart (pose b: 80 mm off the line) and the leader's two paths")
+    tips = arms.groupby(["pose", "arm"])[["x", "y"]].last().unstack("arm")
+    apart = (tips["x", "follower"] - tips["x", "leader"])["a"]
+    off = 1e3 * (tips["y", "follower"] - tips["y", "leader"]).abs()["b"]
+    style.title(
+        figure, f"Two planar arms {apart:g} m apart (pose b: {off:.0f} mm off the line) and the leader's two paths"
+    )
     return figure

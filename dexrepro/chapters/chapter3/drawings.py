@@ -27,7 +27,7 @@ def picture(image: Any, finding: str) -> Any:
     from dexrepro.report import style
 
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.7)
-    axes.imshow(image)
+    axes.imshow(style.trimmed({"view": image})["view"])
     axes.set_axis_off()
     style.title(figure, finding)
     return figure
@@ -38,7 +38,7 @@ def pictures(images: dict[str, Any], finding: str) -> Any:
     from dexrepro.report import style
 
     figure, grid = style.subplots(1, len(images), height=2.9)
-    for axes, (label, image) in zip(grid, images.items()):
+    for axes, (label, image) in zip(grid, style.trimmed(images).items()):
         axes.imshow(image)
         axes.set_axis_off()
         axes.set_title(label)
@@ -52,14 +52,15 @@ def steps(recording: Recording, config: Config) -> Any:
 
     approach, insertion, _ = config.phases
     labels = {
-        "start": "(a) 0 s, start",
-        "centre": f"(b) {approach:g} s, at the opening",
-        "half": f"(c) {approach + insertion / 2:g} s, half-way",
-        "target": f"(d) {sum(config.phases):g} s, at the target",
+        "start": "(a) 0 s:\nstart",
+        "centre": f"(b) {approach:g} s:\nat the opening",
+        "half": f"(c) {approach + insertion / 2:g} s:\nhalf-way",
+        "target": f"(d) {sum(config.phases):g} s:\nat the target",
     }
-    figure, grid = style.subplots(2, 2, height=5.3)
-    for axes, (name, label) in zip(grid.flat, labels.items()):
-        axes.imshow(recording.images[name])
+    figure, grid = style.subplots(1, 4, height=2.3)
+    shown = style.trimmed(recording.images)
+    for axes, (name, label) in zip(grid, labels.items()):
+        axes.imshow(shown[name])
         axes.set_axis_off()
         axes.set_title(label)
     style.title(figure, "The gripper enters through the opening and reaches the cube")
@@ -76,12 +77,14 @@ def orientation(recording: Recording, config: Config) -> Any:
     wanted = tool_axis(centre, centre, target, config.lever)
     figure, axes = _space(style)
     length = 0.22
-    axes.plot(*np.stack((tip - length * rotation[:, 2], tip)).T, label="actual tool axis", **style.LINES["book"])
-    axes.plot(*np.stack((tip - length * wanted, tip)).T, label="final desired axis", **style.LINES["reference"])
-    axes.plot(*np.stack((centre, target)).T, color=style.PLAIN, linewidth=0.8, label="opening to target")
-    _mark(axes, {"$P_R$": centre, "$X_D$": target, "$X_P$": tip})
+    axes.plot(*np.stack((tip - length * rotation[:, 2], tip)).T, **style.LINES["book"])
+    axes.plot(*np.stack((tip - length * wanted, tip)).T, **style.LINES["reference"])
+    axes.plot(*np.stack((centre, target)).T, color=style.PLAIN, linewidth=0.8)
+    axes.text(*(tip - length * rotation[:, 2] + (0.02, 0.0, 0.0)), "actual tool axis", fontsize=7, color=style.BOOK)
+    axes.text(*(tip - length * wanted), "final desired axis  ", fontsize=7, ha="right")
+    axes.text(*(centre + target) / 2, "opening to target  ", fontsize=7, color="#555555", ha="right", va="top")
+    _mark(style, axes, {"$P_R$": centre, "$X_D$": target, "$X_P$": tip})
     angle = float(np.degrees(np.linalg.norm(tilt(wanted, rotation[:, 2]))))
-    axes.legend(loc="upper left")
     style.title(figure, f"Half-way to the opening {angle:.0f}° of the turn remain")
     return figure
 
@@ -96,26 +99,31 @@ def shortest_distance(recording: Recording, config: Config) -> Any:
     centre = np.array(config.centre)
     _, foot = closest_point(centre, list(corners))
     figure, axes = _space(style)
-    axes.plot(*corners.T, color=style.BOOK, linewidth=2.5, label="forearm and tool")
-    axes.plot(*np.stack((centre, foot)).T, color=style.PRINTED, label="$Dis_R$")
-    _mark(axes, {"elbow": corners[0], "$P_{EA}$": corners[1], "$P_E$": corners[2], "$P_R$": centre})
-    axes.legend(loc="upper left")
+    axes.plot(*corners.T, color=style.BOOK, linewidth=2.5)
+    axes.plot(*np.stack((centre, foot)).T, color=style.RIVAL, linewidth=2.0)
+    axes.text(*(centre + foot) / 2, "$Dis_R$ ", fontsize=8, color=style.RIVAL, ha="right", va="bottom")
+    axes.text(*(corners[0] + corners[1]) / 2, "  forearm", fontsize=7, color=style.BOOK)
+    axes.text(*(corners[1] + corners[2]) / 2, "  tool", fontsize=7, color=style.BOOK)
+    _mark(style, axes, {"elbow": corners[0], "$P_{EA}$": corners[1], "$P_E$": corners[2], "$P_R$": centre})
     distance = 1e3 * float(np.linalg.norm(centre - foot))
     style.title(figure, f"With a free tool axis the arm passes {distance:.0f} mm beside the centre")
     return figure
 
 
 def _space(style: Any) -> tuple[Any, Any]:
-    figure, axes = style.subplots(width=style.TWO_COLUMNS * 0.7, height=3.6, subplot_kw={"projection": "3d"})
-    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+    figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.4, subplot_kw={"projection": "3d"})
+    for name, set_label in zip("xyz", (axes.set_xlabel, axes.set_ylabel, axes.set_zlabel)):
+        set_label(f"{name} [m]", labelpad=-4)
+    axes.tick_params(pad=-1)
     axes.view_init(elev=18, azim=-60)
-    axes.locator_params(nbins=4)
-    axes.set_box_aspect(None, zoom=0.72)
     return figure, axes
 
 
-def _mark(axes: Any, points: dict[str, Any]) -> None:
+def _mark(style: Any, axes: Any, points: dict[str, Any]) -> None:
     for name, point in points.items():
         axes.scatter(*point, color="#222222", s=12)
-        axes.text(*(np.asarray(point) + 0.012), name, fontsize=8)
-    axes.set_aspect("equal")
+        axes.text(*(np.asarray(point) - (0.03, 0.0, 0.03)), name, fontsize=8, ha="right", va="top")
+    limits = np.array([axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()])
+    axes.set_box_aspect(np.ptp(limits, axis=1), zoom=0.76)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(style.plt.MultipleLocator(0.2))

@@ -10,14 +10,24 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import reach
-from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics, rms
-from dexrepro.chapters.chapter3.scene import ARM, FOREARM, MID_FOREARM, Touching, build, gripper_arm
+from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics, rms
+from dexrepro.chapters.chapter3.scene import (
+    ARM,
+    ELBOW,
+    FILMED,
+    FOREARM,
+    MID_FOREARM,
+    Touching,
+    build,
+    cutaway,
+    gripper_arm,
+)
 from dexrepro.control.momentum_observer import MomentumObserver
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.elements import Push
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
-from dexrepro.robots.kinematics import point_jacobian
+from dexrepro.robots.kinematics import joint_frames, point_jacobian
 
 Array = NDArray[np.float64]
 FIGURES = {
@@ -46,6 +56,10 @@ FIGURES = {
 TABLES = {"T3.B": "Push: laws, models and directions", "T3.C": "Observer gain: lag and relative error"}
 RATE = 100.0
 SWEPT = {"lag": "lag", "noisy": "noisy_error", "clean": "clean_error"}
+FILM = Film(
+    "plus", "A push of 30 N on the forearm moves the arm by millimetres; it returns when let go.", FILMED,
+    "rcm_distance", "Dis_R [mm]", scale=1e3, span=(4.0, 9.5),
+)  # fmt: skip
 JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 
 
@@ -53,6 +67,18 @@ def scene(config: Config) -> World:
     world = build(config)
     world.add(Push(ARM, trapezoid(config.push), FOREARM, MID_FOREARM))
     return world
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    """Shows the push as a bar that ends at the forearm."""
+    shown = cutaway(world, recording, config)
+    elbow = joint_frames(gripper_arm(config.gripper), recording[f"{ARM}.position"])[:, ELBOW]
+    force = np.stack([recording[f"push.{axis}"] for axis in "xyz"], axis=1)
+    size = np.linalg.norm(config.push.force)
+    forearm = elbow[:, :3, 3] + elbow[:, :3, :3] @ MID_FOREARM - 0.17 * force / size
+    world.add_box("push", (0.025, 0.2, 0.025), (0, 0, 0), colour=(0.0, 0.45, 0.7, 1.0), collides=False)
+    shown.series["push.pose"] = np.where(np.linalg.norm(force, axis=1, keepdims=True) > 0, forearm, -9.0)
+    return shown
 
 
 def trapezoid(push: Config) -> Callable[[float], tuple[float, ...]]:
@@ -182,7 +208,8 @@ def _draw_steps() -> Any:
             velocity += step  # unit mass under a unit external torque
         time = step * np.arange(400)
         axes.plot(time, seen, label=f"$K_{{Ex}}$ = {gain}/s", **style.LINES[line])
-        axes.plot(time, 1 - np.exp(-gain * time), **style.LINES["reference"])
+        label = r"$1 - \exp(-K_{Ex} t)$" if gain == 200 else None
+        axes.plot(time, 1 - np.exp(-gain * time), label=label, **style.LINES["reference"])
     axes.set(xlabel="Time [s]", ylabel=r"Observed $\sigma_i$ [N m]")
     axes.legend(loc="lower right")
     style.title(figure, r"The observer lags by 1/$K_{Ex}$")
@@ -199,10 +226,12 @@ def _draw_torques(recordings: Any, metrics: Any, config: Config) -> Any:
         run = recordings.get(case, recording)
         for joint, line in zip(sorted(busiest), ("book", "rival", "extra1")):
             axes.plot(run.time, run["observed"][:, joint], label=f"{JOINTS[joint]} observed", **style.LINES[line])
-            axes.plot(run.time, run["external"][:, joint], **style.LINES["reference"])
+            axes.plot(run.time, run["external"][:, joint], label="true", **style.LINES["reference"])
         axes.set_ylabel(r"$\tau_{Ex}$ [N m]")
         axes.set_title(f"model with {name}")
-    top.legend(loc="upper right")
+    handles, labels = top.get_legend_handles_labels()
+    once = dict(sorted(zip(labels, handles), key=lambda named: named[0] == "true"))
+    top.legend(once.values(), once, loc="upper right")
     bottom.plot(recording.time, 1e3 * recording["rcm_distance"], **style.LINES["book"])
     shown = (push.start - 1, push.start + push.duration + 2.1)
     bottom.set(xlabel="Time [s]", ylabel="$Dis_R$ [mm]", ylim=(0, 12), xlim=shown)
@@ -241,7 +270,10 @@ def _draw_effect(recordings: Any, metrics: Any, config: Config) -> Any:
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=3)
     found = metrics["plus"]
     peak, tip = 1e3 * found["rcm_peak"], 1e3 * found["error_peak"]
-    style.title(figure, f"30 N move the arm {peak:.1f} mm off the centre and the end point by {tip:.1f} mm")
+    style.title(
+        figure,
+        f"{np.abs(push.force).max():g} N move the arm {peak:.1f} mm off the centre and the end point by {tip:.1f} mm",
+    )
     return figure
 
 
@@ -272,7 +304,13 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    tables = {"T3.B": pd.DataFrame(rows)}
+    tables = {"T3.B": pd.DataFrame(rows).rename(columns=COLUMNS)}
     if "exact_plus" in recordings:
-        tables["T3.C"] = recordings["exact_plus"].frames["sweep"]
+        headers = {
+            "gain": "K_Ex [1/s]",
+            "clean_error": "error [-]",
+            "lag": "lag [s]",
+            "noisy_error": "error, noise [-]",
+        }
+        tables["T3.C"] = recordings["exact_plus"].frames["sweep"].rename(columns=headers)
     return tables

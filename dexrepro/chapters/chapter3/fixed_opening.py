@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter3 import drawings, reach
-from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
-from dexrepro.chapters.chapter3.scene import CAMERA, Touching, build
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
+from dexrepro.chapters.chapter3.scene import CAMERA, FILMED, Touching, build, cutaway
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 
 _REACH = (
     "Distance of the end point to the target and shortest distance Dis_R of the arm to the remote centre in reach "
@@ -56,7 +56,11 @@ TABLES = {
 RATE = 50.0
 REACHES = (1, 2, 3, 4)
 
-scene = build
+scene, stage = build, cutaway
+FILM = Film(
+    "reach1", "The gripper passes the opening to the cube in the box and the arm stays near the opening's centre.",
+    FILMED, "rcm_distance", "Dis_R [mm]", scale=1e3,
+)  # fmt: skip
 
 
 def simulate(config: Config, rng: Any) -> Recording:
@@ -129,7 +133,7 @@ CURVES = {
 def _draw_reach(n: int, recordings: Any, metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, (left, right) = style.subplots(1, 2, height=2.3)
+    figure, (left, right) = style.subplots(1, 2, height=2.6)
     for prefix, (label, line) in CURVES.items():
         recording = recordings.get(f"{prefix}{n}")
         if recording is not None:
@@ -138,12 +142,11 @@ def _draw_reach(n: int, recordings: Any, metrics: Any, config: Config) -> Any:
     approach, insertion, _ = config.cases[f"reach{n}"].phases
     for axes in (left, right):
         for time, word in ((approach, "at $P_R$"), (approach + insertion, "at $X_D$")):
-            axes.axvline(time, color="#444444", linewidth=0.6)
-            axes.annotate(word, (time, 0.02), xycoords=("data", "axes fraction"), rotation=90, fontsize=6.5, ha="right")
+            style.event(axes, time, word)
         axes.set_xlabel("Time [s]")
-    left.set(yscale="log", ylabel=r"Distance to target $\|\tilde X\|$ [m]", ylim=(1e-6, 2))
-    right.set(ylabel="Distance to centre $Dis_R$ [mm]", ylim=(0, 250))
-    right.legend(loc="upper center", bbox_to_anchor=(0.45, 1.02), framealpha=1, frameon=True, edgecolor="none")
+    left.set(yscale="log", ylabel=r"Distance to target $\|\tilde X\|$ [m]", ylim=(1e-6, 20))
+    right.set(yscale="log", ylabel="Distance to centre $Dis_R$ [mm]", ylim=(1e-3, 1e3))
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     found = metrics[f"reach{n}"]
     final, far = 1e6 * found["final_position_error"], 1e3 * found["rcm_distance_max"]
     style.title(figure, f"Reach {n} ends {final:.0f} µm from its target and stays within {far:.2f} mm of the centre")
@@ -158,7 +161,7 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    return {"T3.A": pd.DataFrame(rows), "T3.S": _sensitivity(metrics)}
+    return {"T3.A": pd.DataFrame(rows).rename(columns=COLUMNS), "T3.S": _sensitivity(metrics)}
 
 
 # Variant, what differs, claim, metric, bound that the claim puts on it [m] and the case it departs from.

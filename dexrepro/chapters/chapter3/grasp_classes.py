@@ -142,7 +142,7 @@ def _draw_training(recording: Recording, found: Metrics) -> Any:
 def _draw_example(recording: Recording) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.subplots(width=style.ONE_COLUMN * 1.2, height=3.1)
+    figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.7)
     axes.imshow(recording.images["scene"])
     grasps = recording.frames["grasps"]
     colours = (style.BOOK, style.RIVAL, style.PLAIN)
@@ -155,7 +155,7 @@ def _draw_example(recording: Recording) -> Any:
     axes.plot(boundary.u, boundary.v, label="safety region", **style.LINES["reference"])
     for colour, name in zip(colours, NAMES):
         axes.plot([], [], color=colour, label=f"found {name}")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=4)
+    figure.legend(loc="outside lower center", ncols=2)
     axes.set_axis_off()
     right = float((grasps.found == grasps.true).mean())
     style.title(figure, f"{100 * right:.0f} % of this scene's grasps are told right")

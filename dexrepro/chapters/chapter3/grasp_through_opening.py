@@ -239,4 +239,6 @@ def tabulate(
         table = recording.frames["scenes"].copy()
         table.insert(0, "case", case)
         tables.append(table)
-    return {"T3.G": pd.concat(tables)} if tables else {}
+    names = {"opening_error": "opening error [m]", "x": "x [m]", "y": "y [m]", "angle": "angle [rad]",
+             "truly": "true class", "possible": "graspable candidates", "contact_time": "contact [s]"}  # fmt: skip
+    return {"T3.G": pd.concat(tables).rename(columns=names)} if tables else {}

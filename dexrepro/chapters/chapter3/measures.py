@@ -43,6 +43,36 @@ def reach_metrics(recording: Recording, config: Config) -> Metrics:
     }
 
 
+COLUMNS = {
+    "final_position_error": "end error [m]",
+    "tracking_error_max": "largest tracking error [m]",
+    "tracking_error_inside": "tracking error inside, rms [m]",
+    "rcm_distance_max": "largest Dis_R [m]",
+    "rcm_distance_mean": "mean Dis_R [m]",
+    "rcm_distance_final": "final Dis_R [m]",
+    "contact_time": "contact [s]",
+    "contact_force_max": "largest contact force [N]",
+    "clearance": "clearance [m]",
+    "node_count": "nodes",
+    "joint_speed_max": "largest joint speed [rad/s]",
+    "limit_margin": "margin to the joint limits [rad]",
+    "moving_distance_max": "largest Dis_R, moving [m]",
+    "moving_distance_mean": "mean Dis_R, moving [m]",
+    "moving_error_max": "largest end error, moving [m]",
+    "centre_speed_max": "largest speed of the opening [m/s]",
+    "excursion": "excursion of the opening [m]",
+    "observer_error": "observer error [-]",
+    "observer_change_error": "observer error of the change [-]",
+    "observer_lag": "observer lag [s]",
+    "rcm_rest": "Dis_R at rest [m]",
+    "rcm_peak": "peak Dis_R [m]",
+    "rcm_final": "Dis_R in the end [m]",
+    "rcm_recovery_time": "recovery [s]",
+    "error_peak": "peak end error [m]",
+}
+"""What the metrics are called in tables, with their units."""
+
+
 def last(values: Array, samples: int = 100) -> float:
     """Mean of the last samples."""
     return float(values[-samples:].mean())

@@ -11,9 +11,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import drawings, reach
-from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
-from dexrepro.chapters.chapter3.scene import ARM, Touching, build
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
+from dexrepro.chapters.chapter3.scene import ARM, FILMED, Touching, build, cutaway
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.world import Camera, World
 
 Array = NDArray[np.float64]
@@ -38,6 +38,10 @@ FIGURES = {
 TABLES = {"T3.D": "Moving opening: laws and models"}
 RATE = 50.0
 VIEW = Camera(target=(0.62, -0.2, 0.15), distance=1.3, yaw=30.0, pitch=-40.0)
+FILM = Film(
+    "track", "The lid moves along a figure of eight while the arm stands in its opening and holds the target.", FILMED,
+    "rcm_distance", "Dis_R [mm]", scale=1e3, span=(4.0, 15.5),
+)  # fmt: skip
 
 
 def path(config: Config) -> Callable[[float], Array]:
@@ -54,6 +58,12 @@ def path(config: Config) -> Callable[[float], Array]:
 
 def scene(config: Config) -> World:
     return build(config, path(config))
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    shown = cutaway(world, recording, config)
+    shown.series["lid.pose"] = recording["centre"]
+    return shown
 
 
 def simulate(config: Config, rng: Any) -> Recording:
@@ -116,14 +126,14 @@ def _draw_path(run: Recording, found: Metrics, config: Config) -> Any:
     figure, (left, right) = style.subplots(1, 2, height=2.4)
     x, y, z = run["centre"].T
     left.plot(x, y, **style.LINES["reference"])
-    left.plot(x[0], y[0], marker="*", color=style.PRINTED, markersize=9, linestyle="none", label="start and end")
+    left.plot(x[0], y[0], marker="*", color=style.REFERENCE, markersize=9, linestyle="none", label="start and end")
     left.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
-    left.legend(loc="upper center", bbox_to_anchor=(0.5, 1.16))
+    left.legend(loc="upper center", bbox_to_anchor=(0.5, 1.0))
     for values, name, line in ((x, "x", "book"), (y, "y", "rival"), (z, "z", "extra1")):
-        (curve,) = right.plot(run.time, values, **style.LINES[line])
-        style.label_end(right, curve, name)
+        (curve,) = right.plot(run.time, 1e3 * (values - values[0]), **style.LINES[line])
+        style.label_end(right, curve, name, {"x": 8, "z": -8}.get(name, 0))
     style.phase(right, config.motion.start, config.motion.start + config.motion.period, "moving")
-    right.set(xlabel="Time [s]", ylabel="$P_R$ [m]")
+    right.set(xlabel="Time [s]", ylabel="Shift of $P_R$ [mm]", ylim=(-60, 75))
     speed = 1e3 * found["centre_speed_max"]  # type: ignore[operator]
     style.title(figure, f"The opening moves at up to {speed:.0f} mm/s")
     return figure
@@ -151,7 +161,7 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
         style.phase(axes, motion.start, motion.start + motion.period, "opening moves")
         axes.set_xlabel("Time [s]")
     left.set(ylabel=r"$\|\tilde X\|$ [mm]", yscale="log", ylim=(1e-3, 2e3))
-    right.set(ylabel="$Dis_R$ [mm]", ylim=(0, 180))
+    right.set(ylabel="$Dis_R$ [mm]", yscale="log", ylim=(1e-3, 2e3))
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=4)
     found = metrics["track"]
     far, tip = 1e3 * found["moving_distance_max"], 1e3 * found["moving_error_max"]
@@ -167,4 +177,4 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    return {"T3.D": pd.DataFrame(rows)}
+    return {"T3.D": pd.DataFrame(rows).rename(columns=COLUMNS)}

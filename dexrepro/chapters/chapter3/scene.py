@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dexrepro.experiment import Config
+from dexrepro.experiment import Config, Recording
 from dexrepro.physics.elements import Carried
 from dexrepro.physics.world import Camera, World
 from dexrepro.robots.arm import Arm, Pose, Shape
@@ -27,6 +27,7 @@ LID: tuple[float, float, float, float] = (0.75, 0.72, 0.62, 1.0)
 WALL: tuple[float, float, float, float] = (0.80, 0.82, 0.85, 0.35)
 CUBE: tuple[float, float, float, float] = (0.0, 0.62, 0.45, 1.0)
 CAMERA = Camera(target=(0.6, -0.15, 0.1), distance=1.6, yaw=40.0, pitch=-25.0)
+FILMED = Camera(target=(0.55, -0.2, 0.13), distance=1.6, yaw=40.0, pitch=-25.0)
 
 
 @cache
@@ -73,6 +74,24 @@ def add_box(world: World, box: Config, opening: Any, centre: Callable[[float], A
     world.add_body("lid", lid_shapes(box, opening), tuple(map(float, opening)))
     if centre is not None:
         world.add(Carried("lid", centre))
+
+
+def cutaway(world: World, recording: Recording, config: Config) -> Recording:
+    """For films: the box without the two walls before the camera, so that gripper and cube are seen inside."""
+    (width, depth), (mx, my), height, plate = (
+        config.box.size,
+        config.box.middle,
+        config.box.height,
+        config.box.thickness,
+    )
+    shapes = [
+        Shape("box", (width, depth, plate), Pose((0, 0, -height)), WALL),
+        Shape("box", (plate, depth, height), Pose((-width / 2, 0, -height / 2)), WALL),
+        Shape("box", (width, plate, height), Pose((0, depth / 2, -height / 2)), WALL),
+    ]
+    world.add_body("open_box", shapes, (mx, my, config.centre[2] - plate), collides=False)
+    away = np.full((len(recording.time), 3), -9.0)
+    return Recording({**recording.series, "box.pose": away})
 
 
 def lid_shapes(box: Config, opening: Any) -> list[Shape]:

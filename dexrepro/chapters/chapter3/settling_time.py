@@ -159,4 +159,12 @@ def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
     rows = [{"law": case, **values} for case, values in metrics.items() if case in config.cases]
-    return {"T3.E": pd.DataFrame(rows)}
+    names = {f"settling_{size:g}".replace(".", "p"): f"settling from {size:.3g} rad [s]" for size in config.errors}
+    names |= {
+        "settling_max": "longest settling [s]",
+        "growth": "largest growth of V [-]",
+        "torque_1": "torque from 1 rad [N m]",
+        "bound": "bound, corrected [s]",
+        "bound_printed": "bound, printed [s]",
+    }
+    return {"T3.E": pd.DataFrame(rows).rename(columns=names)}

@@ -69,8 +69,8 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         axes.axhline(1, color="#999999", linewidth=0.6)
         for value, word in ((inner, "$d_a$"), (outer, "$d_b$")):
             style.event(axes, value, word)
-        axes.set(xlabel=r"$|\Xi_k|$", ylabel="E", ylim=(0, 2.1), title=text)
-    inside.legend(loc="upper left", bbox_to_anchor=(0.3, 1.0))
+        axes.set(xlabel=r"$|\Xi_k|$ [-]", ylabel="E [-]", ylim=(0, 3.7), title=text)
+    inside.legend(loc="upper left", bbox_to_anchor=(0.29, 1.04), ncols=2, handlelength=1.8, columnspacing=0.8)
     if "base" in recordings:
         _draw_run(recordings, share, error)
     found = metrics.get("base", {})
@@ -89,10 +89,10 @@ def _draw_run(recordings: Mapping[str, Recording], share: Any, error: Any) -> No
     base = recordings["base"]
     now = base.time <= 3.0
     share.plot(base.time[now], base["share"][now], **style.LINES["book"])
-    share.set(xlabel="Time [s]", ylabel="E", ylim=(-0.05, 1.1), title="in the run")
+    share.set(xlabel="Time [s]", ylabel="E [-]", ylim=(-0.05, 1.1), title="in the run")
     twin = share.twinx()
     twin.plot(base.time[now], base["input_peak"][now], **style.LINES["rival"])
-    twin.set_ylabel(r"largest $|\Xi_k|$", color=style.RIVAL)
+    twin.set_ylabel(r"largest $|\Xi_k|$ [-]", color=style.RIVAL)
     twin.spines["right"].set_visible(True)
     share.yaxis.label.set_color(style.BOOK)
     for case, label, line in (("base", "with robust term", "book"), ("no_robust", "without", "plain")):

@@ -107,26 +107,30 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
 
     if set(recordings) < set(LABELS):
         return {}
-    figure, (left, right) = style.subplots(1, 2, height=2.5)
+    figure, (left, right) = style.subplots(1, 2, height=2.7)
     for case, (label, line) in LABELS.items():
         cost = recordings[case].frames["cost"]
         left.loglog(cost.nodes, cost.step_us, marker="o", markersize=3, label=label, **style.LINES[line])
         right.loglog(cost.nodes, cost.memory_kb, marker="o", markersize=3, **style.LINES[line])
     left.axhline(1e3 * config.period_ms, **style.LINES["reference"])
     left.annotate(
-        "control period 1 ms", (4, 1e3 * config.period_ms), xytext=(0, -9), textcoords="offset points", size=7
-    )
+        f"control period {config.period_ms:g} ms", (90, 1e3 * config.period_ms), xytext=(0, -9), size=7,
+        textcoords="offset points",
+    )  # fmt: skip
+    broad, fixed = 72, 2**config.inputs  # nodes printed in 4.6
     for axes, label in ((left, "Shortest step time [µs]"), (right, "Memory [kB]")):
-        axes.set(xlabel="Nodes", ylabel=label)
-        for nodes in (72, 16384):
+        axes.set(xlabel="Nodes [-]", ylabel=label)
+        for nodes in (broad, fixed):
             axes.axvline(nodes, color="#999999", linewidth=0.6, zorder=-5)
-    places = ((72, " the book's broad network", "left", 0.05), (16384, "its fixed network ", "right", 0.14))
+    places = ((broad, " the book's broad network", "left", 0.05), (fixed, "its fixed network ", "right", 0.14))
     for nodes, word, side, height in places:
         right.annotate(word, (nodes, height), xycoords=("data", "axes fraction"), size=6.5, ha=side)
-    left.legend(loc="upper left", bbox_to_anchor=(0.0, 0.9))
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     small, large = (recordings[case].frames["cost"] for case in ("growing", "lattice"))
-    ratio = float(large.step_us.iloc[-1] / small.step_us[small.nodes <= 72].iloc[-1])
-    style.title(figure, f"A broad network of 72 nodes takes its step {ratio:.0f} times faster than 16384 fixed nodes")
+    ratio = float(large.step_us.iloc[-1] / small.step_us[small.nodes <= broad].iloc[-1])
+    style.title(
+        figure, f"A broad network of {broad} nodes takes its step {ratio:.0f} times faster than {fixed} fixed nodes"
+    )
     return {"4.A": figure}
 
 
@@ -136,5 +140,5 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
         for case, (label, _) in LABELS.items()
         if case in recordings
     ]
-    table = pd.concat(tables)
+    table = pd.concat(tables).rename(columns={"memory_kb": "memory [kB]", "step_us": "shortest step [µs]"})
     return {"T4.D": table[["network", *(name for name in table.columns if name != "network")]]}

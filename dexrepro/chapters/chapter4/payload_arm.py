@@ -23,6 +23,7 @@ from dexrepro.robots.baxter import baxter
 Array = NDArray[np.float64]
 TRAINING = (0, 1)  # phases I and II; phase III has the numbers 2 to 10, one a trajectory
 START_COLOUR, END_COLOUR = (0.90, 0.62, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
+VIEW = Camera(target=(0.42, -0.45, 0.15), distance=1.5, yaw=-60.0, pitch=-20.0)
 EVERY = 2  # physics steps between recorded samples
 
 
@@ -89,6 +90,12 @@ def scene(config: Config) -> World:
         for name, point, colour in zip("ABCDEF", points, [START_COLOUR] * 3 + [END_COLOUR] * 3):
             world.add_sphere(name, 0.02, point, colour=colour, collides=False)
     return world
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    below = (0.0, 0.0, config.payload.drop if config.payload else 0.0)
+    recording.series |= {"arm.position": recording["position"], "payload.pose": recording["tip"] - below}
+    return recording
 
 
 class Pilot:
@@ -184,5 +191,4 @@ def photograph(world: World, part: Recording, time: float) -> NDArray[np.uint8]:
     """The arm and its payload at an instant of a run."""
     k = min(int(np.searchsorted(part.time, time)), len(part.time) - 1)
     poses = {"payload": part["payload.pose"][k]} if "payload.pose" in part else {}
-    camera = Camera(target=(0.42, -0.45, 0.15), distance=1.5, yaw=-60.0, pitch=-20.0)
-    return world.render({"arm": part["arm.position"][k]}, poses, camera=camera, size=(480, 480))
+    return world.render({"arm": part["arm.position"][k]}, poses, camera=VIEW, size=(480, 480))

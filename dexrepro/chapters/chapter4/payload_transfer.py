@@ -10,8 +10,9 @@ import pandas as pd
 
 from dexrepro.chapters.chapter4 import payload_arm
 from dexrepro.chapters.chapter4.measures import Array, rms
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.networks import Lattice
+from dexrepro.physics.rendering import Camera
 from dexrepro.robots import kinematics
 from dexrepro.robots.baxter import baxter
 
@@ -32,7 +33,12 @@ FIGURES = {
 TABLES = {"T4.C": "Nine trajectories with a hanging payload: errors, bound and nodes by method"}
 RATE = 50.0
 
-scene = payload_arm.scene
+scene, stage = payload_arm.scene, payload_arm.stage
+FILM = Film(
+    "reuse", "With what it learned the arm carries the loose payload from A to D, E and F (drawn hanging straight).",
+    Camera(target=(0.42, -0.45, 0.08), distance=1.25, yaw=-60.0, pitch=-20.0), "error", "Tracking error [mm]",
+    scale=1e3, span=(24.0, 39.0),
+)  # fmt: skip
 
 
 def simulate(config: Config, rng: Any) -> Recording:
@@ -115,11 +121,12 @@ def _draw_phases(recording: Recording, config: Config) -> Any:
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, 3, height=2.6)
+    shown = style.trimmed(recording.images)
     for k, (panel, where) in enumerate(zip(axes, ("near B", "near E", "from A to D")), 1):
-        panel.imshow(recording.images[f"phase{k}"])
+        panel.imshow(shown[f"phase{k}"])
         panel.set_axis_off()
         panel.set_title(f"phase {'I' * k}, {config.cases['reuse'].task.pictured[k - 1]:.1f} s: {where}")
-    axes[0].annotate("orange: A, B, C\ngreen: D, E, F", (0.02, 0.03), xycoords="axes fraction", size=7)
+    axes[0].annotate("orange: A, B, C; green: D, E, F", (0, -0.04), xycoords="axes fraction", size=7, va="top")
     style.title(figure, "The payload hangs from the gripper on a ball joint")
     return figure
 
@@ -145,7 +152,7 @@ def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
     for panel in axes[0]:
         style.band(panel, time, -limit, limit, zorder=-5)
         panel.set_ylim(-220, 220)
-    axes[0, 0].legend(loc="lower right")
+    style.legend_below(figure, {label: style.LINES[line] for _, label, line in shown})
     _draw_bars(figure, axes, metrics)
     reuse, fixed = metrics["reuse"]["rmse_mm"], metrics["rbf_medium"]["rmse_mm"]
     style.title(

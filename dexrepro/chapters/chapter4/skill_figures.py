@@ -51,7 +51,7 @@ def stroke_ends(config: Config) -> Array:
 
 def motions_and_nodes(recording: Recording, config: Config) -> Any:
     """Fig. 4.1: what is trained, what is drawn afterwards, and where the nodes go."""
-    figure, axes = style.subplots(1, 4, height=1.9)
+    figure, axes = style.subplots(1, 4, height=2.2)
     for start, end in stroke_ends(config):
         axes[0].plot(*np.transpose([start, end]), color=style.BOOK)
     axes[1].plot(*ellipse_path(config).T, color=style.BOOK)
@@ -72,7 +72,7 @@ def motions_and_nodes(recording: Recording, config: Config) -> Any:
             panel.plot(*centre, ".", color=line["edgecolor"], markersize=3)
         style.panel(panel, letter, text)
         panel.set(xlabel=r"$\dot\alpha_1$ [rad/s$^2$]", ylabel=r"$\dot\alpha_2$ [rad/s$^2$]", aspect="equal")
-        panel.set(xlim=(-85, 45), ylim=(-65, 65))
+        panel.set(xlim=(-85, 45), ylim=(-65, 65), xticks=(-50, 0), yticks=(-50, 0, 50))
     style.title(figure, f"{trained} nodes serve the strokes; the ellipse adds {len(centres) - trained}, for its start")
     return figure
 
@@ -148,11 +148,11 @@ def errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Any:
         for row, values in enumerate((error[:, 0], error[:, 1], np.maximum(np.linalg.norm(error, axis=1), 1e-3))):
             for panel, until in zip(axes[row], (config.task.duration, 3.0)):
                 panel.plot(time[time <= until], values[time <= until], label=label, **style.LINES[line])
-    time = np.linspace(0, config.task.duration, 400)
-    limit = 1e3 * bound.upper * ((bound.initial - bound.final) * np.exp(-bound.decay * time) + bound.final)
     for row in axes[:2]:
         for panel, until in zip(row, (config.task.duration, 3.0)):
-            style.band(panel, time[time <= until], -limit[time <= until], limit[time <= until], zorder=-5)
+            time = np.linspace(0, until, 400)
+            limit = 1e3 * bound.upper * ((bound.initial - bound.final) * np.exp(-bound.decay * time) + bound.final)
+            style.band(panel, time, -limit, limit, zorder=-5)
         row[0].set_ylim(-60, 60)
         row[1].set_ylim(-255, 255)
     for panel in axes[2]:
@@ -187,13 +187,13 @@ def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
         time = recordings[shown[0]].time[recordings[shown[0]]["segment"] == k]
         style.phase(top, time[0], time[-1], f"stroke {ROMAN[k]}" if k < ELLIPSE else "ellipse", _shade(k))
         bottom[k].set(title=ROMAN[k] if k < ELLIPSE else "ellipse", xlabel="Time [s]")
-    top.set(ylabel="Nodes", xlabel="Time of strokes and ellipse [s]", ylim=(0, 16))
+    top.set(ylabel="Nodes [-]", xlabel="Time of strokes and ellipse [s]", ylim=(0, 16), xlim=(0, time[-1]))
     top.legend(loc="upper left", bbox_to_anchor=(0.0, 0.9))
-    bottom[0].set(ylabel="Nodes, first 0.5 s", ylim=(0, 16), yticks=(0, 5, 10, 15))
+    bottom[0].set(ylabel="Nodes at first [-]", ylim=(0, 16), yticks=(0, 5, 10, 15))
     last = max(number(metrics[case]["last_node_s"]) for case in shown)
     counts = ", ".join(str(metrics[case]["nodes"]) for case in shown)
     style.title(
-        figure, f"A smaller threshold gives more nodes ({counts}), all added within {last:.2f} s of the ellipse's start"
+        figure, f"A smaller threshold gives more nodes ({counts}), the last at most {last:.2f} s into the ellipse"
     )
     return figure
 

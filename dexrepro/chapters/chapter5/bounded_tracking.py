@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter5 import letters, pen
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.rendering import Camera
 from dexrepro.primitives import DMP, extend
 from dexrepro.robots.arm import Pose, Shape
@@ -39,6 +40,12 @@ TABLES = {
     "T5.H": "Sensitivity of the bound to model, contact, sensors and start",
 }
 RATE = 100.0
+INK = (0.05, 0.1, 0.4, 1.0)
+VIEW = Camera(target=(0.10, 0.0, -0.06), distance=0.36, yaw=125.0, pitch=-35.0, field_of_view=42.0)
+FILM = Film(
+    "letter_a", "The arm writes the learned letter a; its joint errors vanish within the first second.", VIEW,
+    "error", "Joint error [mrad]", scale=1e3,
+)  # fmt: skip
 
 
 def simulate(config: Config, rng: Any) -> Recording:
@@ -83,15 +90,25 @@ def scene(config: Config) -> Any:
     return world
 
 
+def stage(world: Any, recording: Recording, config: Config) -> Recording:
+    """Shows the ink: short strokes that wait below the table until the pen has made them."""
+    tip = recording["arm.tip"]
+    marks = np.linspace(0, len(tip) - 1, 33).astype(int)
+    for k, (first, last) in enumerate(itertools.pairwise(marks)):
+        beads = [Shape("box", (0.0013, 0.0013, 0.0006), Pose(tuple(tip[i])), INK) for i in range(first, last, 3)]
+        world.add_body(f"ink{k}", beads, (0, 0, 0), collides=False)
+        recording.series[f"ink{k}.pose"] = np.where(np.arange(len(tip)) < last, -1.0, 0.0)[:, None] * [0.0, 0.0, 1.0]
+    return recording
+
+
 def _picture(recording: Recording, config: Config) -> Any:
     """The arm at the end of its letter, the ink as a chain of beads."""
     tip = recording["arm.tip"][:: max(1, len(recording.time) // 400)]
-    ink = tuple(Shape("sphere", (0.0007,), Pose(tuple(point)), (0.05, 0.1, 0.4, 1)) for point in tip.tolist())
+    ink = tuple(Shape("sphere", (0.0007,), Pose(tuple(point)), INK) for point in tip.tolist())
     with scene(config) as world:
         for first in range(0, len(ink), 16):
             world.add_body(f"ink{first}", ink[first : first + 16], (0, 0, 0), collides=False)
-        camera = Camera(target=(0.10, 0.0, -0.06), distance=0.36, yaw=125.0, pitch=-35.0, field_of_view=42.0)
-        return world.render({"arm": recording["arm.position"][-1]}, camera=camera, size=(900, 640))
+        return world.render({"arm": recording["arm.position"][-1]}, camera=VIEW, size=(900, 640))
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
@@ -138,8 +155,8 @@ def _draw_letters(cases: list[str], recordings: Mapping[str, Recording], metrics
 def _draw_picture(recording: Recording) -> Any:
     from dexrepro.report import style
 
-    figure, axes = style.plt.subplots(figsize=(style.ONE_COLUMN * 1.3, 3.1))
-    axes.imshow(recording.images["picture"])
+    figure, axes = style.plt.subplots(figsize=(style.ONE_COLUMN, 2.4))
+    axes.imshow(style.trimmed({"a": recording.images["picture"]})["a"])
     axes.set_axis_off()
     style.title(figure, "The simulated arm has written the letter a")
     return figure
@@ -148,7 +165,7 @@ def _draw_picture(recording: Recording) -> Any:
 def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, grid = style.subplots(3, 4, height=4.6, sharex=True)
+    figure, grid = style.subplots(3, 4, height=4.8, sharex=True)
     bound = config.bound
     for column, (case, (name, line)) in zip(grid.T, SHOWN.items()):
         recording = recordings[case]
@@ -175,6 +192,8 @@ def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
         axes.set_ylabel(text)
     for axes in grid[:, 1:].flat:
         axes.tick_params(labelleft=False)
+    joints = {"joint 1": "-", "joint 2": "--", "joint 3": ":"}
+    style.legend_below(figure, {name: {"color": style.REFERENCE, "linestyle": line} for name, line in joints.items()})
     share = metrics["letter_w"]["bound_use"] or 0.0
     style.title(
         figure, f"With the sign of the network corrected the errors use at most {100 * share:.0f} % of the bound"

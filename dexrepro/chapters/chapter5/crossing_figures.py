@@ -15,7 +15,7 @@ COLOURS = {1: style.EXTRA[1], 2: style.EXTRA[0], 3: style.BOOK}  # of the skills
 
 
 def crossings(recording: Recording, metrics: Any, config: Config) -> Any:
-    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 3.7))
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.0))
     grid = figure.add_gridspec(2, 4, width_ratios=(1.15, 1, 1.15, 1))
     paths, reached = recording.frames["paths"], recording.frames["goals"]
     skills = {b: _lines(paths, "skill", b, colour, 1.6) for b, colour in COLOURS.items()}
@@ -34,6 +34,9 @@ def crossings(recording: Recording, metrics: Any, config: Config) -> Any:
         space.set_title(f"({'abcd'[place]}) {name}", y=0.98)
         if row == 1:
             _distances(side, reached[(reached.draw == 0) & (reached.blocks == blocks)])
+    names = {"demonstrations": "#999999", "one block": COLOURS[1], "two blocks": COLOURS[2], "three blocks": COLOURS[3]}
+    colours = {**names, "goals": style.RIVAL}
+    style.legend_below(figure, {name: {"color": colour} for name, colour in colours.items()})
     worst = min(metrics[f"goals{b}.clearance"] for b in (2, 3))
     style.title(
         figure, f"Added features lift the skill over three blocks; no path comes nearer to them than {worst:.1f} cm"
@@ -66,12 +69,12 @@ def _space(axes: Any, blocks: int, groups: list[Any]) -> None:
     for lines, colour, width in groups:
         for line in lines:
             axes.plot(*line.T, color=colour, linewidth=width)
-    axes.set(xlim=(-7, 9), ylim=(-5, 5), zlim=(0, 10), yticks=(-4, 0, 4))
-    axes.set_box_aspect((16, 10, 10), zoom=1.25)
+    axes.set(xlim=(-7, 9), ylim=(-5, 5), zlim=(0, 10), yticks=(-4, 0, 4), zticks=(0, 5, 10))
+    axes.set_box_aspect((16, 10, 10), zoom=1.15)
     axes.view_init(elev=18, azim=-62)
-    axes.tick_params(labelsize=5, pad=-3)
-    axes.set_xlabel("x [cm]", fontsize=6, labelpad=-8)
-    axes.set_ylabel("y [cm]", fontsize=6, labelpad=-8)
+    axes.tick_params(labelsize=6.5, pad=-3)
+    axes.set_xlabel("x [cm]", fontsize=7, labelpad=-7)
+    axes.set_ylabel("y [cm]", fontsize=7, labelpad=-7)
 
 
 def _box(axes: Any, low: Any, high: Any) -> None:
@@ -98,9 +101,8 @@ def _side(axes: Any, blocks: int, groups: list[Any]) -> None:
 
 
 def _distances(axes: Any, reached: Any) -> None:
-    """Smallest clearance [cm] of the paths to the goals at each x."""
-    values = " / ".join(f"{group.clearance.min():.2f}" for _, group in reached.groupby("x"))
-    axes.set_title(f"free by {values} cm", fontsize=6, fontweight="normal")
+    """Smallest clearance [cm] of the paths to the goals."""
+    axes.set_title(f"clear by {reached.clearance.min():.2f} cm", fontsize=7, fontweight="normal")
 
 
 def changes(recording: Recording, metrics: Any, config: Config) -> Any:

@@ -72,4 +72,9 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
 
 def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
     parts = [recording.frames["letters"].assign(weights=case) for case, recording in recordings.items()]
-    return {"T5.I": pd.concat(parts, ignore_index=True)} if parts else {}
+    names = {
+        "early": f"first {config.early:g} s [mrad]",
+        "whole": "whole letter [mrad]",
+        "bound_use": "largest share of the bound",
+    }
+    return {"T5.I": pd.concat(parts, ignore_index=True).rename(columns=names)} if parts else {}

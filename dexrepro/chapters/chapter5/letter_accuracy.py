@@ -182,7 +182,7 @@ def _draw_paths(recording: Recording, metrics: Metrics, config: Config) -> Any:
             path = paths[(paths.kernels == count) & (paths.method == method)]
             axes.plot(path.x, path.y, **style.LINES[lines[method]])
             axes.plot(path.x_d, path.y_d, **style.LINES["reference"])
-            style.panel(axes, next(letter), f"{name}: {path.mse.iloc[0]:.1e} cm²")
+            style.panel(axes, next(letter), f"{name}: {_power(path.mse.iloc[0])} cm²")
             axes.set(aspect="equal", xlabel="x [cm]")
             if not config.demonstrations:
                 axes.set(xlim=(-0.5, 4.5), ylim=(-0.6, 4.6))
@@ -200,31 +200,32 @@ def _draw_paths(recording: Recording, metrics: Metrics, config: Config) -> Any:
     return figure
 
 
+def _power(value: float) -> str:
+    digits, power = f"{value:.1e}".split("e")
+    return rf"{digits}·10$^{{{int(power)}}}$"
+
+
 def _draw_features(recording: Recording, metrics: Metrics, config: Config) -> Any:
     from dexrepro.report import style
 
     draws, added = recording.frames["draws"], config.features.counts
-    figure, axes = style.subplots(1, len(config.kernels.counts), height=2.5, sharey=True, squeeze=False)
+    figure, axes = style.subplots(1, len(config.kernels.counts), height=2.8, sharey=True, squeeze=False)
     for panel, count in zip(axes[0], config.kernels.counts):
         part = draws[draws.kernels == count].pivot(index="draw", columns="method", values="mse")
         errors = part[[f"idmp{m}" for m in added]]
         style.band(panel, added, errors.quantile(0.1), errors.quantile(0.9))
         panel.plot(added, errors.median(), marker="o", markersize=3, label="IDMP", **style.LINES["book"])
-        size = 2 * count + max(added)
         for method, name, line in (
             ("dmp", "DMP, same kernels", "plain"),
             ("dmp_plus", "DMP+, same kernels", "rival"),
-            ("dmp_equal", f"DMP, {size} weights", "extra2"),
-            ("dmp_plus_equal", f"DMP+, {size} weights", "extra1"),
+            ("dmp_equal", "DMP, as many weights", "extra2"),
+            ("dmp_plus_equal", "DMP+, as many weights", "extra1"),
         ):
             panel.axhline(part[method].median(), label=name, **style.LINES[line])
         panel.set(yscale="log", xlabel="Added features m [-]")
         panel.set_title(f"{count} kernels")
-        panel.legend(fontsize=6, ncols=2, loc="upper right")
-    axes[0, 0].set(ylabel="MSE [cm²]", ylim=(5e-6, 30))
-    if config.demonstrations:
-        axes[0, 0].margins(y=0.35)
-        axes[0, 0].autoscale(axis="y")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    axes[0, 0].set(ylabel="MSE [cm²]", ylim=None if config.demonstrations else (5e-6, 3))
     last = config.kernels.counts[-1]
     better = [m for m in added if (metrics[f"n{last}.idmp{m}.beats_dmp_plus"] or 0) > 0.5]
     text = f"With {last} kernels, {min(better)} added features beat the DMP+" if better else "The DMP+ stays ahead"

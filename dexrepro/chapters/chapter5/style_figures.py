@@ -48,7 +48,7 @@ def _cross(axes: Any, recording: Recording, config: Config) -> None:
             shade = style.plt.get_cmap("viridis")(0.15 + 0.6 * k / len(counts))
             _shape(axes, paths[(paths.letter == letter) & (paths.m == m)], (right * k, up * k), shade)
             if right > 0 and up > 0:
-                axes.annotate(f"m = {m}", (CELL * k + 3.0, CELL * k - 1.4), fontsize=6)
+                axes.annotate(f"m = {m}", (CELL * k + 3.0, CELL * k - 1.4), fontsize=6.5)
         corner = (right * (len(counts) + 1), up * (len(counts) + 1))
         _shape(axes, paths[(paths.letter == letter) & (paths.m == -1)], corner, style.REFERENCE, frame=True)
     axes.set(aspect="equal", xticks=[], yticks=[])
@@ -79,7 +79,7 @@ def mixtures(recording: Recording, config: Config) -> Any:
     frame = recording.frames["mixtures"]
     pairs = list(dict.fromkeys(frame.pair))
     shares = sorted(config.interpolation, reverse=True)
-    height = 1.5 * len(pairs) + 0.4
+    height = 1.7 * len(pairs) + 0.4
     figure, grid = style.subplots(len(pairs), len(shares), height=height, sharex=True, sharey="row", squeeze=False)
     for row, pair in zip(grid, pairs):
         for axes, share in zip(row, shares):
@@ -88,7 +88,8 @@ def mixtures(recording: Recording, config: Config) -> Any:
             axes.set_aspect("equal")
             axes.set_title(rf"$\alpha$ = {share:g}")
         row[0].set_ylabel(f"{pair[0]} to {pair[1]}\ny [cm]")
-    for axes in grid[-1]:
+    for axes in grid.flat:
+        axes.tick_params(labelbottom=True)
         axes.set_xlabel("x [cm]")
     style.title(figure, "Mixed weights give the pointwise mixture of two letters")
     return figure

@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter6 import arms, learning
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.humans import waypoints
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.rendering import Camera
@@ -25,8 +25,8 @@ from dexrepro.robots.inverse_kinematics import solve
 
 FIGURES = {
     "6.3": Figure(
-        "The scene from above: two old boxes (orange), the new one (blue), the learned path (dash-dotted) and the "
-        "constrained one (dashed). The book shows a photograph of the same arrangement.",
+        "The scene from above: two old boxes (orange), the new one (blue), the learned path (grey) and the "
+        "constrained one. The book shows a photograph of the same arrangement.",
         "The learned path runs through the new box, the constrained one round it.",
     ),
     "6.4": Figure(
@@ -45,6 +45,11 @@ BOXES = ("first", "second", "new")
 COLOURS = {"first": (0.95, 0.62, 0.20, 1.0), "second": (0.95, 0.62, 0.20, 1.0), "new": (0.20, 0.50, 0.80, 1.0)}
 TOP = Camera(target=(0.62, -0.32, 0.0), distance=1.15, yaw=0.0, pitch=-89.99, field_of_view=45.0)
 SIDE = Camera(target=(0.5, -0.25, 0.1), distance=1.2, yaw=40.0, pitch=-35.0, field_of_view=45.0)
+FILM = Film(
+    "constrained", "The constrained path takes the whole arm round the new, blue box.",
+    Camera(target=(0.5, -0.25, 0.13), distance=1.5, yaw=40.0, pitch=-35.0, field_of_view=45.0), "distance_new",
+    "Distance to the new box [mm]", scale=1e3,
+)  # fmt: skip
 DOWN = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]])
 
 
@@ -195,16 +200,17 @@ def _draw_scene(original: Recording, constrained: Recording, config: Config) -> 
     image = constrained.images["top"]
     axes.imshow(image)
     for run, line in (
-        (original, {"color": "#C9A400", "linestyle": "-."}),
-        (constrained, {"color": "#D00000", "linestyle": "--"}),
+        (original, {**style.LINES["plain"], "label": "learned path"}),
+        (constrained, {**style.LINES["book"], "label": "constrained path"}),
     ):
         axes.plot(*_pixels(run["desired"], image.shape).T, **line)
+    figure.legend(loc="outside lower center", ncols=2)
     for name, text, shift in (("first", "old", -30), ("second", "old", 16), ("new", "new", -32)):
         spot = _pixels(np.array(config.boxes[name]), image.shape)
         axes.annotate(text, spot, xytext=(shift, -2), textcoords="offset points", fontsize=7)
     axes.set(xlim=(0, image.shape[1]), ylim=(image.shape[0], 0))
     axes.axis("off")
-    style.title(figure, "From above: learned path (yellow)\nand constrained path (red)")
+    style.title(figure, "The learned path crosses the new box, the constrained one goes round it")
     return figure
 
 

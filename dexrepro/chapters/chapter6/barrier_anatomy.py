@@ -113,12 +113,14 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     figure, ((a, b), (c, d)) = style.subplots(2, 2, height=4.2)
     for case, tau, line in (("feedforward", "duration", "book"), ("tau1_feedforward", "1 s", "extra1")):
         share = recordings[case].frames["share"]
-        a.plot(share.gap, share.one, label=f"weight 1, tau = {tau}", **style.LINES[line])
-        a.plot(share.gap, share.h2, color=style.LINES[line]["color"], linestyle=":", label=f"weight $H^2$, tau = {tau}")
-    a.set(xscale="log", xlabel="$1-(\\|e\\|/h)^2$", ylabel="Barrier's share of $k_n$")
+        a.plot(share.gap, share.one, label=rf"weight 1, $\tau$ = {tau}", **style.LINES[line])
+        a.plot(
+            share.gap, share.h2, color=style.LINES[line]["color"], linestyle=":", label=rf"weight $H^2$, $\tau$ = {tau}"
+        )
+    a.set(xscale="log", xlabel="$1-(\\|e\\|/h)^2$ [-]", ylabel="Barrier's share of $k_n$ [-]")
     a.invert_xaxis()
     a.set(ylim=(0, 1.75), yticks=(0, 0.5, 1))
-    a.legend(fontsize=6, ncols=2, loc="upper center", columnspacing=1)
+    a.legend(fontsize=6.5, ncols=2, loc="upper center", columnspacing=1)
     lines = {
         "consistent": "extra1",
         "printed": "printed",
@@ -130,7 +132,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         if case not in recordings:
             continue
         frames = recordings[case].frames
-        label = case.replace("tau1_", "tau = 1 s, ")
+        label = case.replace("tau1_", r"$\tau$ = 1 s, ")
         if case != "consistent":
             b.plot(frames["k2"]["k2"], frames["k2"].e_max, label=label, **style.LINES[line])
         for axes, name, x in ((c, "margin", "margin"), (d, "step", "step")):
@@ -142,13 +144,17 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
             far = lost.e_max / (lost.margin if name == "margin" else limit)
             axes.plot(scale * lost[x], far, "x", color="black", markersize=4)
     b.set(xscale="log", yscale="log", xlabel="$k_2$ [1/s]", ylabel="Largest distance [cm]")
-    c.set(xlabel="Margin h [cm]", ylabel="Largest distance / h", ylim=(0, 1.2))
-    d.set(xlabel="Time step [ms]", ylabel="Largest distance / h", ylim=(0, 1.2), xscale="log")
-    figure.legend(*d.get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize=6.5)
-    for letter, axes, text in zip("abcd", (a, b, c, d), ("who brakes", "gain k2, no barrier", "margin", "time step")):
+    c.set(xlabel="Margin h [cm]", ylabel="Largest distance / h [-]", ylim=(0, 1.2))
+    d.set(xlabel="Time step [ms]", ylabel="Largest distance / h [-]", ylim=(0, 1.2), xscale="log")
+    d.plot([], [], "x", color="black", markersize=4, label="stepped over")
+    figure.legend(*d.get_legend_handles_labels(), loc="outside lower center", ncols=6, columnspacing=1.2)
+    for letter, axes, text in zip(
+        "abcd", (a, b, c, d), ("who brakes", "gain $k_2$, no barrier", "margin", "time step")
+    ):
         style.panel(axes, letter, text)
     gap = metrics["feedforward"]["half_gap_one"]
     style.title(
-        figure, f"The printed barrier outweighs k2 only where 1 - (e/h)^2 < {gap:.0e}; larger k2 means smaller error"
+        figure,
+        rf"The printed barrier outweighs $k_2$ only where $1 - (e/h)^2 < 10^{{{np.log10(float(gap or np.nan)):.0f}}}$",
     )
     return {"6.B": figure}

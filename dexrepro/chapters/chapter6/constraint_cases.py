@@ -150,7 +150,7 @@ def tabulate(
 def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
     from dexrepro.report import style
 
-    figure, (left, right) = style.subplots(1, 2, height=2.5)
+    figure, (left, right) = style.subplots(1, 2, height=2.7)
     lines = ("extra1", "book", "rival", "extra2", "printed")
     for (case, recording), name in zip(recordings.items(), lines):
         bound = _constraint(config.cases[case])
@@ -160,10 +160,10 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         edges = [bound.upper if bound.lower is None or z > 0 else -bound.lower for z in recording["error"][:, 0]]
         right.plot(time, error / np.array(edges), **style.LINES[name])
     right.axhline(1, **style.LINES["reference"])
-    right.annotate("bound", (0.99, 1), xycoords=("axes fraction", "data"), fontsize=7, ha="right", va="bottom")
-    left.set(xlabel="Time [s]", ylabel="$V^c(t)/V^c(0)$", yscale="log", ylim=(1e-6, 3))
-    right.set(xlabel="Time [s]", ylabel="$|z_1|/H$", ylim=(0, None))
-    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize=6)
+    right.annotate("bound", (0.99, 0.98), xycoords=("axes fraction", "data"), fontsize=7, ha="right", va="top")
+    left.set(xlabel="Time [s]", ylabel="$V^c(t)/V^c(0)$ [-]", yscale="log", ylim=(1e-6, 3))
+    right.set(xlabel="Time [s]", ylabel="$|z_1|/H$ [-]", ylim=(0, None))
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     style.panel(left, "a", "Lyapunov function")
     style.panel(right, "b", "Scaled error over its bound")
     hit = metrics.get("asymmetric_outside_printed", {}).get("hit_time")

@@ -160,7 +160,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         left.plot(*path.T, label=case.replace("still_", ""), **style.LINES[line])
         left.plot(*path[-1], "o", color=style.LINES[line]["color"], markersize=3.5)
     left.set(aspect="equal", xlabel="x [cm]", ylabel="y [cm]", xlim=(-0.5, 10.5), ylim=(-2, 3))
-    left.legend(loc="upper left", ncols=2, fontsize=6)
+    left.legend(loc="upper left", ncols=2, fontsize=6.5)
     for case, line in moving.items():
         run = recordings[case]
         right.plot(
@@ -168,7 +168,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         )
     right.axhline(shown.radius, **style.LINES["reference"])
     right.set(xlabel="Time [s]", ylabel="Distance to the centre [cm]", ylim=(0, 9.5))
-    right.legend(loc="upper center", fontsize=6, ncols=2)
+    right.legend(loc="upper center", fontsize=6.5, ncols=2)
     style.panel(left, "a", "still disk")
     style.panel(right, "b", "disk that crosses the path")
     missed = metrics["still_feedforward"]["goal_error"]

@@ -285,7 +285,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     a.set(xlim=(4, 18.5), ylim=(9, 16), ylabel="y [cm]")
     phi = np.linspace(0, np.pi / 2, 300)
     b.plot(np.degrees(phi), config.strength * phi * np.exp(-config.decay * phi), **style.LINES["book"])
-    b.set(xlabel="Angle between heading and obstacle [deg]", ylabel="$\\|p\\|/\\|v\\|$")
+    b.set(xlabel="Angle between heading and obstacle [deg]", ylabel="$\\|p\\|/\\|v\\|$ [1/s]")
     for case in ("centroid", "potential"):
         frame = recordings[case].frames["points"]
         name = "steering" if case == "centroid" else "potential"
@@ -296,7 +296,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         bars = recordings[case].frames["bars"]
         passed = (bars.clearance > 0).groupby(bars.half_width).sum()
         d.plot(passed.index, passed, marker=".", **style.LINES[lines[case]])
-    d.set(xlabel="Half-width of the bar [cm]", ylabel="Bars passed, of 5", ylim=(-0.2, 5.3))
+    d.set(xlabel="Half-width of the bar [cm]", ylabel="Bars passed, of 5 [-]", ylim=(-0.2, 5.3))
     figure.legend(*a.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=6.5)
     for letter, axes, text in zip(
         "abcd", (a, b, c, d), ("past the triangle", "steering term", "point obstacle", "bars")

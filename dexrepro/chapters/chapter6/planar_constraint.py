@@ -149,8 +149,8 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     from dexrepro.report import style
 
     rows = {
-        "tau = duration": {"shown": "feedforward", **{law: law for law in LINES}},
-        "tau = 1 s": {
+        r"$\tau$ = duration": {"shown": "feedforward", **{law: law for law in LINES}},
+        r"$\tau$ = 1 s": {
             "shown": "tau1_feedforward_projected",
             **{f"{law}": f"tau1_{law}" for law in LINES},
             "H^2 weight": "tau1_feedforward_h2",
@@ -173,14 +173,15 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
                 level.plot(run.time, np.maximum(run["lyapunov"], 1e-3), **style.LINES[dashes[label]])
         far.axhline(config.cases[shown].cdmp.margin, color="black", linewidth=0.6)
         far.set(ylabel="$\\|x^c-x\\|$ [cm]", ylim=(0, 0.6))
-        level.set(ylabel="$V^c$", yscale="log", ylim=(1e-1, 1e9))
+        level.set(ylabel="$V^c$ [-]", yscale="log", ylim=(1e-1, 1e9))
     for axes in grid[1, 1:]:
         axes.set_xlabel("Time in sub-skill 2 [s]")
     grid[0, 0].set_xlabel("")
     figure.legend(*grid[1, 1].get_legend_handles_labels(), loc="outside lower center", ncols=7, fontsize=6.5)
     book, one = metrics["feedforward"]["e_max"], metrics["tau1_feedforward"]["violated_from"]
-    late = f";\nwith tau = 1 s the barrier is stepped over at {one:.1f} s" if one else ""
-    style.title(figure, f"Largest distance {book:.2f} of 0.5 cm at the arc with tau = duration{late}")
+    margin = config.cases["feedforward"].cdmp.margin
+    late = rf"; with $\tau$ = 1 s the barrier is stepped over at {one:.1f} s" if one else ""
+    style.title(figure, rf"At most {book:.2f} of {margin:g} cm off in any group with $\tau$ = duration{late}")
     return {"6.2d": figure}
 
 

@@ -148,13 +148,13 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
         style.title(figures[identifier], text)
         handles = axes.get_legend_handles_labels()
         if handles[0]:
-            figures[identifier].legend(*handles, loc="outside lower center", ncols=3, fontsize=6)
+            figures[identifier].legend(*handles, loc="outside lower center", ncols=3)
     return figures
 
 
 def _demonstrations(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any) -> str:
     for i in range(settings.demonstrations.count):
-        axes.plot(*lines[f"demonstration_{i}"].T, color=style.PRINTED, linewidth=0.5)
+        axes.plot(*lines[f"demonstration_{i}"].T, color=style.PLAIN, linewidth=0.6)
     axes.annotate("start", (3, 16), xytext=(0.3, 15.2), fontsize=7)
     axes.annotate("goal", (5, 14), xytext=(4.6, 14.5), fontsize=7)
     return "The new block lies across the\ndemonstrated paths"
@@ -162,14 +162,14 @@ def _demonstrations(axes: Any, lines: Any, numbers: Any, settings: Config, style
 
 def _learned(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any) -> str:
     axes.plot(*lines["first"].T, color=style.BOOK, label="sub-skill 1")
-    axes.plot(*lines["second"].T, color=style.PRINTED, linestyle="-.", label="sub-skill 2")
+    axes.plot(*lines["second"].T, color=style.EXTRA[0], linestyle="-.", label="sub-skill 2")
     return f"The learned path cuts {-numbers['clearance_new_max']:.2f} cm or more\ninto the new block"
 
 
 def _spline(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any) -> str:
     axes.plot(*lines["first"].T, color=style.BOOK, label="sub-skill 1")
     axes.plot(*lines["reference"].T, color="black", linewidth=0.8, label="spline")
-    axes.plot(*lines["reserved"].T, color=style.PRINTED, linestyle="-.", label="kept of sub-skill 2")
+    axes.plot(*lines["reserved"].T, color=style.EXTRA[0], linestyle="-.", label="kept of sub-skill 2")
     return f"The spline reference clears everything\nby {numbers['clearance_reference_min']:.2f} cm"
 
 
@@ -180,7 +180,7 @@ def _extended(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any)
     )
     for name, colour, dash, text in (
         ("extended_1", style.BOOK, "-", "1, new goal"),
-        ("extended_2", style.PRINTED, "-.", "2, new start"),
+        ("extended_2", style.EXTRA[0], "-.", "2, new start"),
     ):
         path = lines[name]
         axes.plot(*path.T, color=colour, linestyle=dash, label=f"sub-skill {text}")

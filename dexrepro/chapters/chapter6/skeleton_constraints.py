@@ -19,8 +19,8 @@ FIGURES = {
         "Stick figure of the synthetic person with the box at six instants.",
     ),
     "6.7": Figure(
-        "Distance of the measured joints to the median of ten demonstrations (band from smallest to largest, left red, "
-        "right blue) and the 95th percentiles. The book shows the bands; our noise levels set the ratio.",
+        "Distance of the measured joints to the median of ten demonstrations (band from smallest to largest; left "
+        "green, right blue) and the 95th percentiles. The book shows the bands; our noise levels set the ratio.",
         "The wrists spread about twice as far as the shoulders.",
     ),
     "6.8": Figure(
@@ -28,7 +28,7 @@ FIGURES = {
         "Block diagram: loop 1 restores lengths outwards, then the hands, then loop 2 restores lengths inwards.",
     ),
     "6.9": Figure(
-        "Paths of the six joints, front view: constrained primitives (solid), original primitives (dotted) and stick "
+        "Paths of the six joints: constrained primitives (solid), original primitives (dotted) and stick "
         "figures at six instants. The book shows the same in three dimensions.",
         "The constrained arm paths differ from the original ones most at elbows and wrists.",
     ),
@@ -188,7 +188,7 @@ def _instants(run: Recording, settings: Config) -> NDArray[Any]:
 def _draw_person(run: Recording, settings: Config) -> Any:
     from dexrepro.report import style
 
-    figure, grid = style.subplots(1, 6, height=1.7, sharex=True, sharey=True)
+    figure, grid = style.subplots(1, 6, height=1.4, sharex=True, sharey=True)
     joints = _joints(run, "truth")
     for letter, axes, index in zip("abcdef", grid, _instants(run, settings)):
         left, right = joints[index, :, 2]
@@ -198,36 +198,36 @@ def _draw_person(run: Recording, settings: Config) -> Any:
         _stick(axes, joints[index], "#333333")
         axes.set(aspect="equal", xlabel="x [cm]", xlim=(-45, 45), ylim=(-45, 12))
         style.panel(axes, letter, f"{run.time[index]:.1f} s")
-    middle = joints[0][0]
-    for a, b, text in ((0, 1, "22"), (1, 2, "28")):
-        grid[0].annotate(
-            text, (middle[a] + middle[b])[[0, 2]] / 2, xytext=(-9, 0), textcoords="offset points", fontsize=6
-        )
-    grid[0].annotate("33", joints[0][:, 2].mean(axis=0)[[0, 2]], xytext=(0, 6), textcoords="offset points", fontsize=6)
+    s, (_, right) = settings.skeleton, joints[0]
+    for a, b, value, place in ((0, 1, s.upper_arm, (4, -1)), (1, 2, s.forearm, (4, -6))):
+        spot = (right[a] + right[b])[[0, 2]] / 2
+        grid[0].annotate(f"{value:g}", spot, xytext=place, textcoords="offset points", fontsize=6.5)
+    spot = joints[0][:, 2].mean(axis=0)[[0, 2]]
+    grid[0].annotate(f"{s.box_length:g}", spot, xytext=(0, -2), textcoords="offset points", fontsize=6.5, ha="center")
     grid[0].set_ylabel("z [cm]")
-    style.title(figure, "A synthetic person carries a box of 33 cm")
+    style.title(figure, f"A synthetic person carries a box of {settings.skeleton.box_length:g} cm")
     return figure
 
 
 def _draw_spread(run: Recording, numbers: Metrics) -> Any:
     from dexrepro.report import style
 
-    figure, grid = style.subplots(1, 4, height=2.1, gridspec_kw={"width_ratios": [1, 1, 1, 0.8]})
+    figure, grid = style.subplots(1, 4, height=2.4, gridspec_kw={"width_ratios": [1, 1, 1, 1]})
     frame, percentiles = run.frames["spread"], run.frames["percentiles"]
     for letter, name, axes in zip("abc", ("wrist", "elbow", "shoulder"), grid):
-        for side, colour in zip(SIDES, ("#D55E00", "#0072B2")):
+        for side, colour in zip(SIDES, (style.EXTRA[0], style.BOOK)):
             low, high = frame[f"{name}_{side}_low"], frame[f"{name}_{side}_high"]
             axes.fill_between(frame.u, low, high, color=colour, alpha=0.45, linewidth=0, label=side)
-        axes.set(xlabel="Time / duration", ylim=(0, 14))
+        axes.set(xlabel="Time / duration [-]", ylim=(0, 14))
         style.panel(axes, letter, name)
-    grid[0].set_ylabel("Distance to the median [cm]")
-    grid[0].legend(loc="upper left")
+    grid[0].set_ylabel("Distance to the\nmedian [cm]")
+    figure.legend(*grid[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     for i, name in enumerate(("wrist", "elbow", "shoulder")):
-        for side, colour, shift in zip(SIDES, ("#D55E00", "#0072B2"), (-0.2, 0.2)):
+        for side, colour, shift in zip(SIDES, (style.EXTRA[0], style.BOOK), (-0.2, 0.2)):
             values = percentiles[f"{name}_{side}"]
             grid[3].bar(i + shift, values.mean(), 0.38, color=colour, alpha=0.6)
             grid[3].plot(np.full(len(values), i + shift), values, "k.", markersize=3)
-    grid[3].set_xticks(range(3), ("wrist", "elbow", "shoulder"), fontsize=6)
+    grid[3].set_xticks(range(3), ("wrist", "elbow", "shoulder"))
     grid[3].set_ylabel("95th percentile [cm]")
     style.panel(grid[3], "d", "three groups")
     ratio = f"{numbers['spread_ratio_low']:.1f} to {numbers['spread_ratio_high']:.1f}"
@@ -242,12 +242,14 @@ def _draw_stages(run: Recording) -> Any:
     axes.set(xlim=(0, 10), ylim=(0, 1))
     axes.axis("off")
     boxes = [("original", ["six primitives"]), *bimanual.stages(), ("result", ["six paths"])]
-    for i, (name, tracks) in enumerate(boxes):
-        x = 0.9 + 2.05 * i
+    before = None
+    for x, (name, tracks) in zip((0.6, 2.7, 5.2, 7.7, 9.5), boxes):
         frame = {"boxstyle": "round", "facecolor": "#EAF2F8", "edgecolor": "#0072B2", "linewidth": 0.6}
-        axes.text(x, 0.5, "\n".join([name, *tracks]), ha="center", va="center", fontsize=7, bbox=frame)
-        if i:
-            axes.annotate("", (x - 0.78, 0.5), (x - 1.22, 0.5), arrowprops={"arrowstyle": "->", "linewidth": 0.8})
+        box = axes.text(x, 0.5, "\n".join([name, *tracks]), ha="center", va="center", fontsize=7, bbox=frame)
+        if before is not None:
+            ends = {"patchA": before.get_bbox_patch(), "patchB": box.get_bbox_patch(), "shrinkA": 1, "shrinkB": 1}
+            axes.annotate("", (x, 0.5), before.get_position(), arrowprops={"arrowstyle": "->", "lw": 0.8, **ends})
+        before = box
     style.title(figure, "Lengths are restored outwards, then the hands, then lengths inwards")
     return figure
 
@@ -258,19 +260,22 @@ def _draw_paths(run: Recording, settings: Config) -> Any:
     figure, panels = style.subplots(1, 2, height=2.8, sharey=True)
     joints, original = _joints(run, "joints"), _joints(run, "original")
     for axes, view, label in zip(panels, ((0, 2), (1, 2)), ("x [cm]", "y [cm]")):
-        for side, colour in zip((0, 1), (style.BOOK, style.PRINTED)):
+        for side, colour in zip((0, 1), (style.BOOK, style.EXTRA[0])):
             for joint in range(3):
                 axes.plot(*joints[:, side, joint][:, view].T, color=colour)
                 axes.plot(*original[:, side, joint][:, view].T, color=colour, linestyle=":", linewidth=0.8)
         axes.set(xlabel=label, aspect="equal")
     for letter, index in zip("abcdef", _instants(run, settings)):
         _stick(panels[0], joints[index], "#999999", alpha=0.6)
-        panels[0].annotate(letter, joints[index, 1, 2][[0, 2]], fontsize=7)
+        spot = joints[index, 1, 2][[0, 2]]
+        panels[0].annotate(letter, spot, xytext=(3, 3), textcoords="offset points", fontsize=7)
     panels[0].plot([], [], color="black", label="constrained")
     panels[0].plot([], [], ":", color="black", label="original")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     panels[0].set(ylabel="z [cm]", ylim=(-42, 8))
-    style.panel(panels[0], "a", "from the front (left arm blue)")
+    panels[1].set(ylabel="z [cm]")
+    panels[1].tick_params(labelleft=True)
+    style.panel(panels[0], "a", "from the front (left arm blue, right green)")
     style.panel(panels[1], "b", "from the side")
     moved = np.linalg.norm(joints - original, axis=-1).max(axis=0)
     shoulder, elbow, wrist = moved.max(axis=0)

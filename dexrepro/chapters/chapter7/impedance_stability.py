@@ -17,10 +17,10 @@ from dexrepro.robots.pen_arm import gripper, pen_arm
 FIGURES = {
     "7.B": Figure(
         "(a) Largest spectral radius of the sampled loop along the path against the gain k_s (line), and what the "
-        "simulated arm does with that gain: torque ripple (points, right axis; 0.14 N m is the task itself). Dotted: "
+        "simulated arm does with that gain: torque ripple (points, right axis; 0.14 N m is the task itself). Dashed: "
         "stability limit. (b) V = r' M r after an initial error of 0.2 rad in each joint, torque limit lifted, with "
         "and without time-delay estimation. Not in the book, whose proof in continuous time has no upper bound.",
-        "The arm chatters just where the sampled loop is predicted to become unstable, at three times the printed "
+        "The arm chatters close to where the sampled loop is predicted to become unstable, at three times the printed "
         "gain.",
     ),
 }
@@ -111,7 +111,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     figure, (bound, fall) = style.subplots(1, 2, height=2.5)
     values = np.array([[gain, m["predicted_radius"], m["torque_travel"] or np.nan] for gain, m in rows])
     bound.plot(values[:, 0], values[:, 1], **style.LINES["book"])
-    bound.axhline(1.0, **style.LINES["printed"])
+    bound.axhline(1.0, **style.LINES["reference"])
     bound.set(xlabel="Gain $k_s$ [N m s/rad]", ylabel="Predicted spectral radius [-]", ylim=(0.6, 1.6))
     bound.yaxis.label.set_color(style.BOOK)
     ripple = bound.twinx()
@@ -134,10 +134,11 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     fall.legend()
     style.panel(fall, "b", "V after an initial error")
     limits = metrics["summary"]
-    low, high = limits["measured_stable"], limits["measured_unstable"]
-    style.title(
-        figure, f"The loop turns unstable between k_s = {low:g} and {high:g}, where the sampled model predicts it"
+    measured, predicted = (
+        " and ".join(f"{limits[f'{kind}_{side}']:g}" for side in ("stable", "unstable") if limits[f"{kind}_{side}"])
+        for kind in ("measured", "predicted")
     )
+    style.title(figure, f"The loop turns unstable between $k_s$ = {measured}, predicted between {predicted}")
     return {"7.B": figure}
 
 

@@ -9,9 +9,10 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter7 import desk, skills
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.elements import Push
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.world import World
 from dexrepro.robots.pen_arm import pen_arm
 
 FIGURES = {
@@ -33,6 +34,19 @@ RATE = 100.0
 PICTURES = {"a": 0.5, "b": 1.8, "c": 2.7, "d": 3.5, "e": 4.6, "f": 6.5}
 
 scene = desk.scene
+FILM = Film(
+    "muscle", "The arm carries the cube past the stack; its tip stays within micrometres of the plan.", desk.CAMERA,
+    "tracking", "Error of the tip [µm]", scale=1e6,
+)  # fmt: skip
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    """The cube lies at its start, in the gripper from picking to release, then where it was put down."""
+    time, tip = recording.time, recording["arm.tip"]
+    pick, release = np.searchsorted(time, [config.pick, config.release])
+    recording.series["cube.pose"] = tip[np.clip(np.arange(len(time)), pick, release)]
+    recording.series["tracking"] = tip - recording["planned"]
+    return recording
 
 
 def simulate(config: Config, rng: Any) -> Recording:
@@ -75,10 +89,9 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
 
 
 def draw_pictures(recording: Recording) -> Any:
-    from dexrepro.chapters.chapter7 import pictures as views
     from dexrepro.report import style
 
-    images = views.trimmed(recording.images)
+    images = style.trimmed(recording.images)
     words = {"a": "grasp", "f": "release"}
     figure, axes = style.subplots(2, 3, height=3.6)
     for (letter, instant), panel in zip(PICTURES.items(), axes.flat):
@@ -102,7 +115,7 @@ def draw_tracking(recordings: Mapping[str, Recording], metrics: Mapping[str, Any
         panel.plot(recording.time, recording["arm.torque"][:, k], **style.LINES["book"])
         for instant, word in ((case.pick, "pick"), (case.release, "release")):
             style.event(panel, instant, word)
-        panel.set(xlabel="Time [s]", ylabel="Torque [N m]" if k == 0 else "")
+        panel.set(xlabel="Time [s]", ylabel="Torque [N m]" if k == 0 else "", xlim=(0, recording.time[-1] + 1.6))
         panel.margins(y=0.15)
         style.panel(panel, letter, f"joint {k + 1}, {name}")
     plan, side, error = (figure.add_subplot(grid[1, 2 * k : 2 * k + 2]) for k in range(3))
@@ -126,7 +139,7 @@ def draw_tracking(recordings: Mapping[str, Recording], metrics: Mapping[str, Any
     error.legend(loc="center right", bbox_to_anchor=(1.0, 0.68))
     style.panel(error, "e", "error of the tip")
     found = 1e3 * metrics["muscle"]["rms_error"]
-    style.title(figure, f"The tip follows the plan to {found:.1f} micrometres although gripper and cube are unmodelled")
+    style.title(figure, f"The tip follows the plan to {found:.1f} µm although gripper and cube are unmodelled")
     return figure
 
 

@@ -109,13 +109,14 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     start, end = config.pushes.before
     for case, (line, label) in lines.items():
         recording = recordings[case]
-        contact.plot(recording.time, recording["contact"], label=label, **style.LINES[line])
+        look = {**style.LINES[line], "linewidth": 2.4 if case == "muscle" else 1.1}
+        contact.plot(recording.time, recording["contact"], label=label, **look)
         window = recording.between(start - 0.1, end + 0.3)
         free = 1e3 * (recording["arm.tip"] - recording["planned"])[:, 1]
-        push.plot(recording.time[window], free[window] - free[window][0], **style.LINES[line])
+        push.plot(recording.time[window], free[window] - free[window][0], **look)
     contact.set(xlabel="Time [s]", ylabel="Contact force [N]", xlim=(2.8, 4.2), ylim=(0, None))
-    contact.legend(fontsize=6, loc="upper left", borderpad=0.0)
-    contact.set_ylim(top=1.7 * contact.get_ylim()[1])
+    contact.legend(fontsize=6.5, loc="upper left", borderpad=0.0)
+    contact.set_ylim(top=1.8 * contact.get_ylim()[1])
     push.axvspan(start, end, color="#EAF2F8", linewidth=0)
     push.set(xlabel="Time [s]", ylabel="Sideways deviation [mm]")
     width = 0.2
@@ -128,8 +129,9 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
         bars.bar(places, values, width, color=colour, label=NAMES[name])
         bars.plot(places, estimated, ".", color="k", markersize=3)
     bars.set(xticks=range(3), xticklabels=["before", "behind", "at rest"], ylabel="Deviation [mm]")
-    bars.set_ylim(top=2.0 * bars.get_ylim()[1])
-    bars.legend(fontsize=6, loc="upper right", handlelength=1.0, borderpad=0.0)
+    bars.set_ylim(top=2.2 * bars.get_ylim()[1])
+    bars.plot([], [], ".", color="k", markersize=3, label="with estimation")
+    bars.legend(fontsize=6.5, loc="upper right", handlelength=1.0, borderpad=0.0)
     for letter, panel, text in zip("abc", (contact, push, bars), ("contact with the stack", "push of 0.5 N", "pushes")):
         style.panel(panel, letter, text)
     style.title(figure, "Estimation hides the impedance: without it, muscle-like impedance is soft far and stiff near")

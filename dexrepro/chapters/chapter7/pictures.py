@@ -58,13 +58,6 @@ def ends(axes: Axes, reach: Reach) -> None:
     axes.plot(*goal[:2], "o", color="k", markersize=3.5, zorder=5)
 
 
-def trimmed(images: dict[str, Any]) -> dict[str, Any]:
-    """Pictures without the white margin that all of them share."""
-    dark = np.any([np.asarray(image).min(axis=2) < 250 for image in images.values()], axis=0)
-    rows, columns = np.flatnonzero(dark.any(axis=1)), np.flatnonzero(dark.any(axis=0))
-    return {name: image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] for name, image in images.items()}
-
-
 def name_directions(axes: Axes, **options: Any) -> None:
     for name, line in DIRECTIONS.items():
         axes.plot([], [], label=name, **line)

@@ -159,12 +159,11 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
 
 
 def draw_pictures(images: Mapping[str, Any]) -> dict[str, Any]:
-    from dexrepro.chapters.chapter7 import pictures
     from dexrepro.report import style
 
-    shown = pictures.trimmed({name: image for name, image in images.items() if name != "platform"})
+    shown = style.trimmed({name: image for name, image in images.items() if name != "platform"})
     platform, axes = style.subplots(width=style.ONE_COLUMN, height=2.5)
-    axes.imshow(pictures.trimmed({"platform": images["platform"]})["platform"])
+    axes.imshow(style.trimmed({"platform": images["platform"]})["platform"])
     axes.axis("off")
     style.title(platform, "Arm, board and obstacle (simulated)")
     figure, panels = style.subplots(1, 4, height=1.7)
@@ -182,7 +181,7 @@ def draw_paths(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], 
     from dexrepro.report import style
 
     recording, task = recordings["corrected"], skills.reach(config)
-    figure, plans, sides = pictures.plans_over_sides(2, 3, height=5.4)
+    figure, plans, sides = pictures.plans_over_sides(2, 3, height=5.6)
     level = pictures.joined(figure, plans, sides, 0, 1)
     level.plot(recording.time, recording["stiffness"], color="#AAAAAA", linewidth=0.6, linestyle="--")
     level.set(xlabel="Time [s]", ylabel="Stiffness $X^{stf}$ [-]", ylim=(0.02, 0.045))
@@ -211,7 +210,9 @@ def draw_paths(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], 
         style.panel(plans[place], letter, f"{height}, {distance}: d' = {separation:.1f}")
     for place in ((0, 0), *places.values()):
         pictures.ends(plans[place], task)
-    pictures.name_directions(plans[0, 2])
+    looks = {"demonstrated, ordinary": {"color": "#AAAAAA", "linewidth": 0.6, "linestyle": "--"}}
+    looks |= {"learned": style.LINES["book"], "printed sign": style.LINES["printed"], **pictures.DIRECTIONS}
+    style.legend_below(figure, looks)
     style.title(figure, "Forward and right are distinct for a low obstacle and overlap for a tall one (simulated)")
     return figure
 
@@ -234,6 +235,7 @@ def draw_stiffness(recording: Recording, config: Config) -> Any:
         style.panel(panel, letter, f"{key[1]} obstacle, {key[0]}")
     axes[0, 0].plot([], [], label="no obstacle", **style.LINES["reference"])
     pictures.name_directions(axes[0, 0])
+    axes[0, 0].set_ylim(0.02, 0.15)
     for panel in axes[1]:
         panel.set_xlabel("Time [s]")
     for panel in axes[:, 0]:

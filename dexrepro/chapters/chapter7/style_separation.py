@@ -86,7 +86,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
             panel.semilogy(ranks["rank"], 10 * ranks["worst"], "o", fillstyle="none", color=style.BOOK, label="worst")
             for rank, worst, count in ranks[["rank", "worst", "collisions"]].to_numpy().tolist():
                 if count:
-                    panel.annotate(f"{count:.0f}", (rank, 10 * worst), xytext=(0, 5), color=style.PRINTED,
+                    panel.annotate(f"{count:.0f}", (rank, 10 * worst), xytext=(0, 5),
                                    textcoords="offset points", fontsize=7, ha="center")  # fmt: skip
     for letter, panel, text in zip("ab", axes, ("a set of each coordinate", "one set for all coordinates")):
         panel.axhline(
@@ -100,6 +100,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
             xticks=range(1, 7),
         )
         style.panel(panel, letter, text)
+    axes[0].plot([], [], "k", linestyle="none", marker="$n$", markersize=4, label="number that touch")
     axes[0].legend(loc="upper right", fontsize=6.5)
     spectrum = recordings["per_coordinate"].frames["spectrum"]
     names = ("along", "lateral", "vertical")

@@ -163,9 +163,12 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     from dexrepro.report import style
 
     left_out, values = recordings["main"].frames["left_out"], metrics["main"]
-    figure, (one, many) = style.subplots(1, 2, height=2.8)
+    figure, (one, many) = style.subplots(1, 2, height=2.9)
     colours = (style.BOOK, style.RIVAL, style.EXTRA[0], style.EXTRA[2], style.PLAIN)
-    labels = [text.replace(", ", ",\n").replace("plane a ", "plane a\n") for text in METHODS.values()]
+    labels = [
+        text.replace(", ", ",\n").replace("plane a ", "plane a\n").replace("same ", "same\n")
+        for text in METHODS.values()
+    ]
     places = np.arange(len(METHODS))
     one.bar(places, [values[f"left_out_{m}"] for m in METHODS], 0.6, color=colours)
     for place, method in zip(places, METHODS):
@@ -175,12 +178,13 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     touch.spines["right"].set_visible(True)
     touch.bar(places + 0.2, [100 * values[f"touches_{m}"] for m in METHODS], 0.38, color=colours, hatch="///",
               edgecolor="w", linewidth=0)  # fmt: skip
-    touch.axhline(100 * values["touches_person"], **style.LINES["reference"])
+    touch.axhline(100 * values["touches_person"], label="the person (touches)", **style.LINES["reference"])
+    touch.legend(loc="upper left")
     touch.set(ylabel="Touch the obstacle [%] (hatched)", ylim=(0, 100))
     for letter, panel, text in zip(
         "ab", (one, many), ("leave one out", f"{values['unseen_count']:.0f} unseen conditions")
     ):
-        panel.set_xticks(places, labels, fontsize=6)
+        panel.set_xticks(places, labels, fontsize=6.5)
         panel.set_ylabel("RMS error [cm]")
         style.panel(panel, letter, text)
     ratio = values["unseen_nearest"] / values["unseen_fuzzy"]

@@ -35,7 +35,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
 def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, grid = style.subplots(4, 2, height=6.6, sharex="row")
+    figure, grid = style.subplots(4, 2, height=7.2, sharex="row")
     lines = {"broad": ("BFNN", "book"), "fuzzy": ("FNN", "rival")}
     for axis, (column, letter) in enumerate(zip(grid.T, "xy")):
         for case, (label, line) in lines.items():
@@ -54,11 +54,12 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
         column[1].set(xlim=(0, 0.5), ylim=(-1.1 * bound, 1.1 * bound))
         for row, label in enumerate((f"${letter}$ [m]", *[f"$e_{letter}$ [mm]"] * 3)):
             column[row].set_ylabel(label)
-        column[3].set_xlabel("Time [s]")
+        for axes in column:
+            axes.set_xlabel("Time [s]")
     names = ("Path", "Transient, tuned rates", "Steady error, rate 1 as printed", "Steady error, tuned rates")
     for letter, axes, name in zip("abcd", grid[:, 0], names):
         style.panel(axes, letter, name)
-    grid[0, 0].legend(loc="lower center", ncols=3)
+    figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     ratio = metrics["summary"]["ratio_tuned_x"] if "summary" in metrics else float("nan")
     unit = metrics["summary"]["ratio_unit_x"] if "summary" in metrics else float("nan")
     style.title(
@@ -86,11 +87,10 @@ def _draw_nodes(recordings: Any, metrics: Any, config: Config) -> Any:
         values = config.cases[case].networks.thresholds
         axes.set_title(rf"$\Theta_{index + 1}$ = ({', '.join(f'{value:g}' for value in values)})")
         axes.set(xlabel="Time [s]", xlim=(0, 43))
-    row[0].set(ylabel="Number of nodes", ylim=(0, None))
+    row[0].set(ylabel="Number of nodes [-]", ylim=(0, None))
     totals = [int(metrics[case]["nodes"]) for case in THRESHOLDS]
-    style.title(
-        figure, f"Smaller thresholds, more nodes: {totals[0]}, {totals[1]} and {totals[2]} against 99 on the grid"
-    )
+    grid = f" against {metrics['fuzzy']['nodes']:.0f} on the grid" if "fuzzy" in metrics else ""
+    style.title(figure, f"Smaller thresholds, more nodes: {totals[0]}, {totals[1]} and {totals[2]}{grid}")
     return figure
 
 
@@ -136,7 +136,7 @@ def _draw_friction(recordings: Any, metrics: Any, config: Config) -> Any:
 def _draw_centres(recordings: Any, metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
-    figure, row = style.subplots(1, 3, height=2.6, sharex=True, sharey=True)
+    figure, row = style.subplots(1, 3, height=2.9, sharex=True, sharey=True)
     levels = config.networks.position_levels
     for axes, case in zip(row, THRESHOLDS):
         run, nodes = recordings[case], recordings[case].frames["nodes"]
@@ -183,7 +183,7 @@ def _draw_gains(recordings: Any, metrics: Any, config: Config) -> Any:
                 place = (metrics[case]["gain"], metrics[case][f"early_{letter}"])
                 side: Any = {"xytext": (-5, -5), "ha": "right", "va": "top"} if below else {"xytext": (4, 4)}
                 axes.annotate(name, place, textcoords="offset points", fontsize=6.5, **side)
-        axes.set(xlabel=r"Adaptation gain $\Gamma_G\,\overline{|\vartheta_G|^2}$", ylabel=f"rms $e_{letter}$ [mm]")
+        axes.set(xlabel=r"Adaptation gain $\Gamma_G\,\overline{|\vartheta_G|^2}$ [-]", ylabel=f"rms $e_{letter}$ [mm]")
         axes.set(xlim=(0.7, 1e5), ylim=(0.01, 5))
     row[0].legend(loc="lower left")
     style.title(figure, "The adaptation gain sets the error: at equal gain the fixed network is not worse")
@@ -221,10 +221,15 @@ VARIANTS = (
 def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
-    columns = ("max_x", "max_y", "bound_used", "rms_x", "rms_y", "early_x", "early_y", "nodes", "features",
-               "network_force", "feature_power", "gain")  # fmt: skip
+    columns = {"max_x": "largest e_x [mm]", "max_y": "largest e_y [mm]", "bound_used": "share of the bound used",
+               "rms_x": "rms e_x [mm]", "rms_y": "rms e_y [mm]", "early_x": "rms e_x, early [mm]",
+               "early_y": "rms e_y, early [mm]", "nodes": "nodes", "features": "features",
+               "network_force": "rms network force [N]", "feature_power": "feature power [-]",
+               "gain": "adaptation gain [-]"}  # fmt: skip
     rows = [
-        {"case": case, **{name: metrics[case].get(name) for name in columns}} for case in recordings if case in metrics
+        {"case": case, **{text: metrics[case].get(name) for name, text in columns.items()}}
+        for case in recordings
+        if case in metrics
     ]
     return {
         "T8.1": _parameters(config),

@@ -70,10 +70,10 @@ def _draw_transfer(recordings: Any, metrics: Any, config: Config) -> Any:
     for axes, edge in ((axes, edge) for axes in row for edge in ((0.0, "$T_a$"), (1.0, "$T_b$"))):
         axes.axvline(edge[0], color="#444444", linewidth=0.6)
         axes.annotate(edge[1], (edge[0], 1), xycoords=("data", "axes fraction"), fontsize=7, ha="center", va="bottom")
-    row[0].set(xlabel="$t/T_s$", ylabel="$K'/K^*$")
-    row[1].set(xlabel="$t/T_s$", ylabel="$T_s\\,\\dot K' / (K^* - K_0)$")
-    row[0].legend(loc="lower left")
-    style.title(figure, "The gain moves along half a sine, at most at 1.6 times the mean rate")
+    row[0].set(xlabel="$t/T_s$ [-]", ylabel="$K'/K^*$ [-]")
+    row[1].set(xlabel="$t/T_s$ [-]", ylabel="$T_s\\,\\dot K' / (K^* - K_0)$ [-]")
+    row[0].legend(loc="lower left", bbox_to_anchor=(0.08, 0.06))
+    style.title(figure, f"The gain moves along half a sine, at most at {rate.max():.1f} times the mean rate")
     return figure
 
 
@@ -97,7 +97,7 @@ def _draw_scene(recordings: Any, metrics: Any, config: Config) -> Any:
         axes.plot(*np.array([(0, 0), elbow, tip]).T, marker="o", markersize=4, label=name, **style.LINES[line])
     axes.set(xlabel="$x$ [m]", ylabel="$y$ [m]", aspect="equal", xlim=(-0.13, 0.33), ylim=(-0.02, 0.42))
     axes.legend(loc="upper left", fontsize=6.5)
-    style.title(figure, "The arm meets the object at 0.22 m")
+    style.title(figure, f"The arm meets the object at {surface:g} m")
     return figure
 
 
@@ -158,12 +158,14 @@ def _draw_gain(recordings: Any, metrics: Any, config: Config) -> Any:
         row[1].axhline(abs(best), **style.LINES["reference"])
         row[1].set_ylabel(f"$|K_{key}|$ [{unit}]")
     grid[1, 0].set_xlabel("Time [s]")
-    grid[1, 1].set_xlabel("Iteration $m$")
+    grid[1, 1].set_xlabel("Iteration $m$ [-]")
     grid[0, 0].legend(loc="center left", fontsize=6.5)
     style.panel(grid[0, 0], "a", "Gain in use")
     style.panel(grid[0, 1], "b", "Iterates of the policy iteration")
-    digits = metrics["soft"]["digits"]
-    style.title(figure, f"{len(steps)} iterations on four seconds of contact find the optimum to {digits:.1f} digits")
+    digits, seconds = metrics["soft"]["digits"], np.ptp(soft.time[soft["phase"] == EXPLORING])
+    style.title(
+        figure, f"{len(steps)} iterations on {seconds:.0f} s of contact find the optimum to {digits:.1f} digits"
+    )
     return figure
 
 
@@ -188,7 +190,7 @@ def _draw_objects(recordings: Any, metrics: Any, config: Config) -> Any:
             stiffness, [100 * m[f"gain_error_{key}"] for _, m in found], color=colour, marker=marker, markersize=4
         )
     row[0].legend()
-    row[0].set(xlabel="Stiffness of the object [N/m]", ylabel="Gain")
+    row[0].set(xlabel="Stiffness of the object [N/m]", ylabel="Gain [N/m] or [N]")
     row[1].set(xlabel="Stiffness of the object [N/m]", ylabel="Relative error [%]")
     noise = recordings["soft"].frames["noise"].query("quantity == 'force'")
     for key, line, marker in (("x", "book", "o"), ("s", "rival", "s")):
@@ -200,7 +202,9 @@ def _draw_objects(recordings: Any, metrics: Any, config: Config) -> Any:
     for letter, axes, name in zip("abc", row, ("Learned; dashed: optimum", "Distance from it", "Under sensor noise")):
         style.panel(axes, letter, name)
     worst = 100.0 * (metrics.get("summary", {}).get("worst_gain_error") or float("nan"))
-    style.title(figure, f"The learned gain is optimal within {worst:.1f} % from 5 to 1000 N/m")
+    style.title(
+        figure, f"The learned gain is optimal within {worst:.1f} % from {stiffness[0]:g} to {stiffness[-1]:g} N/m"
+    )
     return figure
 
 
@@ -227,7 +231,12 @@ def tabulate(
     rows = [
         {"case": case, **{name: metrics[case].get(name) for name in columns}} for case in recordings if case in metrics
     ]
-    tables = {"T8.B": pd.DataFrame(rows), "T8.Sb": sensitivity_table(VARIANTS, metrics)}
+    names = {"bound_used": "share of the bound used", "max_error_x": "largest z_1x [mm]",
+             "max_error_y": "largest z_1y [mm]", "force_jump": "force jump [N]", "force_rate": "force rate [N/s]",
+             "reference_speed": "reference speed [m/s]", "gain_x": "K_x [N/m]", "gain_s": "K_s [N]",
+             "gain_error_x": "error of K_x [-]", "gain_error_s": "error of K_s [-]",
+             "violated_at": "violated at [s]", "oscillation": "oscillation [mm]"}  # fmt: skip
+    tables = {"T8.B": pd.DataFrame(rows).rename(columns=names), "T8.Sb": sensitivity_table(VARIANTS, metrics)}
     if "soft" in recordings:
         frames = recordings["soft"].frames
         tables["T8.2"] = frames["iterates"]

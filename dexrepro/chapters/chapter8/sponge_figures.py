@@ -49,9 +49,9 @@ def _phases(axes: Any, run: Recording, names: bool = True) -> None:
 def _draw_pictures(recordings: Any, metrics: Any, config: Config) -> Any:
     from dexrepro.report import style
 
-    images = recordings["learned"].images
+    images = style.trimmed(recordings["learned"].images)
     names = sorted(images, key=lambda name: float(name.removeprefix("at_").removesuffix("s")))
-    figure, row = style.subplots(1, len(names), height=1.9)
+    figure, row = style.subplots(1, len(names), height=1.7)
     for axes, name in zip(np.atleast_1d(row), names):
         axes.imshow(images[name])
         axes.set_axis_off()
@@ -77,7 +77,7 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
             axes.plot(learned.time, scale * (learned[channel][:, axis] - middle), label=label, **style.LINES[line])
         unit = f"${letter}$ {-middle:+g} m [mm]" if axis < 2 else f"${letter}$ [m]"
         axes.set(ylabel=unit, xlim=(0, config.duration))
-        style.panel(axes, "abc"[axis])
+        style.panel(axes, "abc"[axis], ("Sideways", "Sideways", "Height")[axis])
     for axes in grid[0]:
         axes.set_ylim(-0.1, 0.1)
     depth, error = grid[1]
@@ -119,7 +119,7 @@ def _draw_gain(recordings: Any, metrics: Any, config: Config) -> Any:
         _phases(axes, learned)
     row[0].legend(loc="lower left", bbox_to_anchor=(0.0, 0.14), fontsize=6.5)
     found, best = steps.iloc[-1].next_x, steps.iloc[-1].optimal_x
-    style.title(figure, f"The gain settles at {found:.1f} N/m, the optimum is {best:.1f} N/m")
+    style.title(figure, f"The gain settles at {found:.1f} N/m, the optimum is {best:.1f} N/m".replace("-", "−"))
     return figure
 
 
@@ -152,7 +152,7 @@ def _draw_stiffness(recordings: Any, metrics: Any, config: Config) -> Any:
     axes.set_xticks([100, 200, 500, 1000], ["100", "200", "500", "1000"])
     axes.minorticks_off()
     axes.legend(loc="lower left")
-    style.title(figure, f"Below {crossing:.0f} N/m the claim fails")
+    style.title(figure, f"Below {crossing:.0f} N/m the learned law presses more")
     return figure
 
 
@@ -185,7 +185,16 @@ def tabulate(
     ends = {
         f"{case}_end": {"peak_compression": metrics[case].get("final_compression")} for case in _BASE if case in metrics
     }
-    tables = {"T8.E": pd.DataFrame(rows), "T8.Sc": sensitivity_table(VARIANTS, {**metrics, **ends})}
+    names = {"stiffness": "stiffness [N/m]", "final_compression": "final compression [mm]",
+             "final_force": "final force [N]", "peak_compression": "peak compression [mm]",
+             "peak_force": "peak force [N]", "max_error_x": "largest z_1x [mm]", "max_error_y": "largest z_1y [mm]",
+             "max_error_z": "largest z_1z [mm]", "bound_used": "share of the bound used", "gain_x": "K_x [N/m]",
+             "gain_s": "K_s [N/m]", "gain_error": "error of the gain [-]", "peak_torque": "peak torque [N m]",
+             "stopped_at": "stopped at [s]"}  # fmt: skip
+    tables = {
+        "T8.E": pd.DataFrame(rows).rename(columns=names),
+        "T8.Sc": sensitivity_table(VARIANTS, {**metrics, **ends}),
+    }
     if "learned" in recordings:
         tables["T8.F"] = recordings["learned"].frames["iterates"]
         tables["T8.G"] = recordings["learned"].frames["noise"]

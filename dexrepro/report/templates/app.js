@@ -46,3 +46,33 @@ for (const link of document.querySelectorAll("a.enlarge")) {
   });
 }
 dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });
+
+// Films run while they are in view, unless the reader asked for less motion or pressed Pause.
+const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+const inView = new IntersectionObserver((entries) => entries.forEach((entry) => entry.target.run(entry.isIntersecting)),
+  { threshold: 0.6 });
+for (const figure of document.querySelectorAll("figure.film")) {
+  const [picture, link, button] = ["img", "a", "button"].map((name) => figure.querySelector(name));
+  const still = picture.getAttribute("src");
+  figure.run = (on) => {
+    picture.src = on ? link.getAttribute("href") : still;
+    button.textContent = on ? "Pause" : "Play";
+  };
+  const toggle = (event) => {
+    event.preventDefault();
+    inView.unobserve(figure);
+    figure.run(button.textContent === "Play");
+  };
+  link.addEventListener("click", toggle);
+  button.addEventListener("click", toggle);
+  button.hidden = false;
+  if (!calm) inView.observe(figure);
+}
+
+function reveal() {
+  const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  for (let node = target; node; node = node.parentElement) if (node.tagName === "DETAILS") node.open = true;
+  target?.scrollIntoView();
+}
+window.addEventListener("hashchange", reveal);
+if (location.hash) reveal();

@@ -1,0 +1,82 @@
+"""Parameters as the pages show them: value, unit, origin and the book's symbol, and where each symbol is set."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from dexrepro.config import Provenance, resolved_block
+from dexrepro.report import symbols
+
+
+def table(experiment: str, composed: Mapping[str, Any], origins: Mapping[str, Provenance]) -> list[dict[str, Any]]:
+    """Every parameter of an experiment; ``home`` is the key whose comment names the symbol, None without a symbol."""
+    rows = []
+    for key, value in _flat(resolved_block(composed, experiment), experiment):
+        origin, home = _origin(key, composed, origins)
+        rows.append({"key": key, "value": value, "home": home, **_shown(origin)})
+    return rows
+
+
+def index(
+    composed: Mapping[str, Any], origins: Mapping[str, Provenance], rows: Iterable[Mapping[str, Any]]
+) -> list[dict[str, Any]]:
+    """A chapter's symbols in order: the key that sets each, and which of ``rows`` follows it in each experiment."""
+    used: dict[str, dict[str, str]] = {}
+    for row in rows:
+        if row["home"]:
+            used.setdefault(row["home"], {}).setdefault(row["key"].partition(".")[0], row["key"])
+    found = [
+        {"key": key, "value": _get(composed, key), "used": used.get(key, {}), **_shown(origin)}
+        for key, origin in origins.items()
+        if origin.symbol
+    ]
+    return sorted(found, key=lambda entry: (entry["plain"].lower(), entry["plain"], not entry["used"]))
+
+
+def _shown(origin: Provenance | None) -> dict[str, Any]:
+    if origin is None:
+        return {"symbol": "", "plain": "", "unit": "", "kind": "", "text": "", "range": ""}
+    bounds = f"{origin.low:g} to {origin.high:g}" if origin.low is not None else ""
+    plain = origin.symbol or ""
+    return {"symbol": symbols.html(plain), "plain": plain, "unit": origin.unit, "kind": origin.kind,
+            "text": origin.text, "range": bounds}  # fmt: skip
+
+
+def _origin(
+    key: str, composed: Mapping[str, Any], origins: Mapping[str, Provenance]
+) -> tuple[Provenance | None, str | None]:
+    """A parameter's own comment, completed by that of the parameter or block it refers to; and the symbol's home."""
+    parts = key.split(".")
+    nearest = next((".".join(parts[:n]) for n in range(len(parts), 1, -1) if ".".join(parts[:n]) in origins), None)
+    own = origins[nearest] if nearest else None
+    if own and own.symbol:
+        return own, nearest
+    node: Any = composed
+    for depth, part in enumerate(parts, 1):
+        node = node.get(part) if isinstance(node, Mapping) else None
+        if isinstance(node, str) and node.startswith("${") and node.endswith("}"):
+            further, home = _origin(".".join([node[2:-1], *parts[depth:]]), composed, origins)
+            if own and further:
+                return replace(own, symbol=further.symbol), home
+            return own or further, home
+    return own, None
+
+
+def _get(node: Any, dotted: str) -> Any:
+    for part in dotted.split("."):
+        node = node.get(part) if isinstance(node, Mapping) else None
+    if isinstance(node, Mapping):
+        return ", ".join(f"{key}: {value}" for key, value in node.items() if key != "_target_")
+    return node
+
+
+def _flat(node: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
+    rows: list[tuple[str, Any]] = []
+    for key, value in node.items():
+        if isinstance(value, Mapping):
+            rows += _flat(value, f"{prefix}.{key}")
+        else:
+            rows.append((f"{prefix}.{key}", value))
+    return rows

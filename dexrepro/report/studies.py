@@ -1,0 +1,101 @@
+"""A study as a figure: how often each claim holds, by what margin, and which parameter decides."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from dexrepro import chapters
+from dexrepro.report import style
+
+ROW = 0.2  # inch a claim
+EDGES = (0.62, 0.42)  # inch above and below the rows
+LONGEST = 30  # characters of a parameter's name
+SAFE = 0.95  # share of the samples in which a claim has to hold to be called robust
+LOOKS: dict[str, dict[str, Any]] = {  # the book's claims and ours, told apart by colour and mark
+    "book": {"color": style.BOOK, "marker": "o"},
+    "ours": {"color": style.RIVAL, "marker": "s"},
+}
+
+
+def finding(study: Mapping[str, Any]) -> str:
+    """The study in one sentence."""
+    claims = study["claims"].values()
+    robust = sum(row["share"] >= SAFE for row in claims)
+    return f"{robust} of {len(claims)} claims hold in at least {SAFE:.0%} of {study['samples']} samples"
+
+
+def draw(study: Mapping[str, Any]) -> Any:
+    """The figure of a stored study: share of the samples, margin, most influential parameter; one claim a row."""
+    sources = {claim.id: claim.source for claim in chapters.load(study["chapter"]).claims}
+    rows = dict(sorted(study["claims"].items(), reverse=True))
+    height = ROW * len(rows) + sum(EDGES)
+    with style.style(), style.plt.rc_context({"figure.constrained_layout.use": False}):
+        figure, (shares, margins) = style.subplots(1, 2, height=height, sharey=True, width_ratios=(1, 1))
+        figure.subplots_adjust(0.085, EDGES[1] / height, 0.72, 1 - EDGES[0] / height, wspace=0.06)
+        for place, (claim, row) in enumerate(rows.items()):
+            look = LOOKS["book" if sources.get(claim, "book") == "book" else "ours"]
+            _share(shares, place, row, look)
+            _margin(margins, place, row, look)
+            margins.annotate(
+                _parameter(row, study["experiment"]), (1, place), xycoords=("axes fraction", "data"),
+                xytext=(6, 0), textcoords="offset points", va="center", fontsize=7,
+            )  # fmt: skip
+        shares.set(xlabel="Share of the samples [%]", xlim=(-4, 104), ylim=(-0.6, len(rows) - 0.4))
+        shares.set_yticks(range(len(rows)), list(rows))
+        margins.set(xlabel="Margin [-]", xlim=(-1.08, 1.08))
+        margins.axvline(0, **style.LINES["reference"])
+        for axes, word in ((shares, "holds in"), (margins, "by a margin of")):
+            axes.set_title(word)
+            axes.grid(axis="x")
+            axes.set_axisbelow(True)
+            axes.tick_params(axis="y", length=0)
+        margins.annotate("follows most", (1, 1), xycoords="axes fraction", xytext=(6, 4), textcoords="offset points",
+                         fontweight="bold")  # fmt: skip
+        _legend(figure, {sources.get(claim, "book") for claim in rows})
+        style.title(figure, finding(study))
+    return figure
+
+
+def save(study: Mapping[str, Any], path: Path) -> Path:
+    """Write the figure as SVG and return its path."""
+    figure = draw(study)
+    with style.style():
+        figure.savefig(path, metadata={"Date": None, "Creator": "dexrepro"})
+    style.plt.close(figure)
+    return path
+
+
+def _share(axes: Axes, place: int, row: Mapping[str, Any], look: Mapping[str, Any]) -> None:
+    axes.plot([100 * row["low"], 100 * row["high"]], [place, place], color=look["color"], solid_capstyle="butt")
+    axes.plot(100 * row["share"], place, linestyle="", markersize=4.5, **look)
+
+
+def _margin(axes: Axes, place: int, row: Mapping[str, Any], look: Mapping[str, Any]) -> None:
+    """Line from 5 to 95 %, bar from 25 to 75 %, mark at the median; what is beyond -1 or 1 is drawn at the edge."""
+    low, first, middle, third, high = np.clip(row.get("quantiles") or [row["median_margin"]] * 5, -1, 1)
+    axes.plot([low, high], [place, place], color=look["color"])
+    axes.plot([first, third], [place, place], color=look["color"], linewidth=4.5, alpha=0.45, solid_capstyle="butt")
+    axes.plot(middle, place, linestyle="", markersize=3.5, **look)
+
+
+def _parameter(row: Mapping[str, Any], experiment: str) -> str:
+    if not row["parameter"]:
+        return "\u2013"
+    name = row["parameter"].removeprefix(f"{experiment}.")
+    name = name if len(name) <= LONGEST else f"\u2026{name[-LONGEST:]}"
+    return f"{name} ({row['correlation']:+.1f})".replace("-", "\u2212")
+
+
+def _legend(figure: Any, sources: set[str]) -> None:
+    words = {"book": "claim of the book", "ours": "test of ours"}
+    handles = [
+        style.plt.Line2D([], [], markersize=4.5, label=words[name], **LOOKS[name])
+        for name in LOOKS
+        if name in sources or (name == "ours" and sources - {"book"})
+    ]
+    figure.legend(handles=handles, loc="upper right", ncols=2, fontsize=7)

@@ -1,0 +1,87 @@
+"""Films: made from a recording, beside the watched quantity, and made again only when something has changed."""
+
+from __future__ import annotations
+
+import os
+import types
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from PIL import Image
+
+from dexrepro.experiment import Experiment, Film, Recording
+from dexrepro.physics.rendering import Camera
+from dexrepro.physics.world import World
+from dexrepro.report import animation
+from dexrepro.robots.planar import planar
+from dexrepro.storage import save_recording, write_json
+
+CAMERA = Camera((0.4, 0.0, 0.0), 1.5, 0.0, -89.9)
+
+
+def scene(config):
+    world = World(gravity=(0, 0, 0))
+    world.add_arm("arm", planar([0.5, 0.3], [1.5, 0.9]), [0.0, 0.0])
+    return world
+
+
+def stage(world, recording, config):
+    return Recording({**recording.series, "arm.position": recording["angles"]})
+
+
+@pytest.fixture
+def swing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Experiment]:
+    """A result folder whose arm turns by a right angle in two seconds."""
+    module = types.ModuleType("swing", "An arm swings.")
+    module.scene, module.stage, module.__file__ = scene, stage, str(tmp_path / "swing.py")
+    module.FILM = Film("turn", "The arm turns.", CAMERA, "tip", "Distance [mm]", scale=1e3, span=(0.5, 2.0))
+    (tmp_path / "swing.py").touch()
+    experiment = Experiment.of(module)
+    chapter = types.SimpleNamespace(experiment=lambda name: experiment)
+    monkeypatch.setattr(animation.chapters, "load", lambda number: chapter)
+    folder = tmp_path / "results"
+    time = np.linspace(0, 2, 41)
+    angles = np.column_stack([time * np.pi / 4, 0 * time])
+    series = {"time": time, "angles": angles, "tip": np.column_stack([np.cos(time), np.sin(time)])}
+    for case in ("still", "turn"):
+        save_recording(Recording(series), folder / "series", case, 20.0)
+    write_json(folder / "run.json", {"chapter": "90", "experiment": "swing", "cases": {"still": {}, "turn": {}}})
+    (folder / "config.yaml").write_text(yaml.safe_dump({"cases": {"still": {}, "turn": {}}}))
+    return folder, experiment
+
+
+def test_a_film_shows_the_declared_case_and_span_beside_the_quantity(swing: tuple[Path, Experiment]) -> None:
+    path = animation.render(swing[0])
+    assert path == swing[0] / "animation/turn.gif"
+    with Image.open(path) as film, Image.open(path.with_suffix(".png")) as still:
+        assert film.size == still.size == (2 * animation.SIZE[0], animation.SIZE[1])
+        assert film.n_frames == 31, "one frame a sample from 0.5 to 2 s"
+        first = np.asarray(film.convert("RGB")).astype(int)
+        film.seek(film.n_frames - 1)
+        last = np.asarray(film.convert("RGB")).astype(int)
+    width = animation.SIZE[0]
+    assert np.abs(first - last)[:, :width].max() > 100, "the arm moves"
+    blue = [np.sum((picture[..., 2] > 130) & (picture[..., 0] < 60)) for picture in (first[:, width:], last[:, width:])]
+    assert blue[1] > blue[0] + 100, "the curve is coloured up to the instant"
+
+
+def test_a_film_is_up_to_date_until_its_recording_or_its_code_changes(swing: tuple[Path, Experiment]) -> None:
+    folder, experiment = swing
+    film = animation.film_of(folder, experiment)
+    assert film is not None
+    assert not animation.up_to_date(film, experiment)
+    animation.render(folder)
+    assert animation.up_to_date(film, experiment)
+    later = film.stat().st_mtime + 10
+    for changed in (folder / "series/turn.csv.gz", Path(str(experiment.module.__file__))):
+        before = changed.stat().st_mtime
+        os.utime(changed, (later, later))
+        assert not animation.up_to_date(film, experiment)
+        os.utime(changed, (before, before))
+
+
+def test_another_case_is_shown_in_the_same_way(swing: tuple[Path, Experiment]) -> None:
+    with Image.open(animation.render(swing[0], "still")) as film:
+        assert film.size[0] == 2 * animation.SIZE[0]

@@ -1,0 +1,62 @@
+"""The drawing of a study shows each claim with its interval, its margin and what it follows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from dexrepro import cli, study
+from dexrepro.report import page, studies
+from dexrepro.runner import plan_chapter, run_plans
+from dexrepro.storage import write_json
+
+
+def entry(index: int, margins: dict[str, float]) -> dict:
+    return {"index": index, "values": {"decay.start": float(index)}, "margins": margins, "error": None}
+
+
+@pytest.fixture
+def summary(toy: Path) -> dict:
+    """Twenty samples: C90.01 always holds, C90.02 in the first half, by a margin that falls with the start."""
+    entries = [entry(k, {"C90.01": 0.5, "C90.02": 0.95 - k / 10}) for k in range(20)]
+    return study.summary("90", "decay", entries)
+
+
+def test_the_margin_is_summarised_by_quantiles(summary: dict) -> None:
+    assert summary["claims"]["C90.02"]["quantiles"] == pytest.approx([-0.855, -0.475, 0.0, 0.475, 0.855])
+
+
+def test_the_figure_shows_shares_intervals_and_what_a_claim_follows(summary: dict) -> None:
+    figure = studies.draw(summary)
+    shares, margins = figure.axes
+    assert [label.get_text() for label in shares.get_yticklabels()] == ["C90.02", "C90.01"]
+    whiskers = [line.get_xdata() for line in shares.lines if len(line.get_xdata()) == 2]
+    row = summary["claims"]["C90.02"]
+    assert list(whiskers[0]) == pytest.approx([100 * row["low"], 100 * row["high"]])
+    words = {text.get_text() for text in margins.texts}
+    assert {"start (\u22121.0)", "\u2013", "follows most"} <= words
+    assert studies.finding(summary) == "1 of 2 claims hold in at least 95% of 20 samples"
+
+
+def test_the_report_shows_stored_studies(summary: dict, toy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(study, "baseline_dir", lambda: toy / "baselines")
+    (toy / "baselines/study").mkdir(parents=True)
+    write_json(toy / "baselines/study/decay.json", summary)
+    plans, _ = plan_chapter("90")
+    run_plans(plans, workers=1, force=False)
+    folder = page.build(Path("results")).parent
+    assert "follows most" in (folder / "files/decay/study.svg").read_text()
+    assert 'src="files/decay/study.svg"' in (folder / "chapter90.html").read_text()
+    assert "<td>50 %</td><td>30–70 %</td> <td>20</td>" in " ".join((folder / "index.html").read_text().split())
+
+
+def test_the_command_says_where_the_drawing_is(
+    toy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(study, "baseline_dir", lambda: toy / "baselines")
+    monkeypatch.setattr(cli, "out", Console(width=200, highlight=False))
+    assert cli.main(["study", "chapter=90", "samples=2", "workers=1"]) == 0
+    assert "drawn in results/study/decay.svg" in capsys.readouterr().out
+    assert (toy / "results/study/decay.svg").exists()
