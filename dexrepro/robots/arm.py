@@ -278,7 +278,10 @@ class Arm:
         return (*self.fixed, (self.end @ tool.mount, link))
 
     def urdf(self) -> str:
-        """The arm as URDF text: root link "world", then one link for every body, all with explicit inertials."""
+        """The arm as URDF text: root link "world", then one link for every body, all with explicit inertials.
+
+        One element a line: PyBullet breaks lines of more than 8 kB anywhere, even within a number.
+        """
         hidden = self.tool.replaces if self.tool else ()
         chain = [
             (_revolute(joint, Pose.of(origin)), link)
@@ -293,7 +296,8 @@ class Arm:
         base = tuple(replace(shape, pose=self.base @ shape.pose) for shape in self.base_shapes)
         links.insert(0, Link("world", 1.0, (0, 0, 0), (1, 0, 0, 1, 0, 1), base))
         joints = [joint(parent.name, child.name) for (joint, _), (parent, child) in zip(chain, pairwise(links))]
-        return f"<robot name={quoteattr(self.name)}>{''.join(link.urdf() for link in links)}{''.join(joints)}</robot>"
+        body = "".join([link.urdf() for link in links] + joints)
+        return f"<robot name={quoteattr(self.name)}>{body}</robot>".replace("><", ">\n<")
 
 
 def _scaled(inertia: Inertia, factor: float) -> Inertia:

@@ -155,7 +155,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "finished": 1,
     }
     if "lyapunov" in recording:
-        v = recording["lyapunov"][:: round(0.01 / config.control_period / RECORDED)]
+        v = recording["lyapunov"][:: max(round(0.01 / config.control_period / RECORDED), 1)]
         result |= {"v_start": float(v[0]), "v_end": float(v[-1]), "v_rising": float(np.mean(np.diff(v) > 0))}
         result["weights_end"] = float(np.abs(recording["weights"][-1]).max())
     return result
