@@ -488,8 +488,8 @@ def _study_jobs(options: argparse.Namespace) -> int:
     results = [text for text in options.selection if text.startswith("results=")]
     status = _launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
     for name in names:
-        if study.summary_file(name).exists():
-            _print_study(name, study.summary_file(name), folder)
+        if (path := study.summary_file(name, folder)).exists():
+            _print_study(name, path, folder)
     return status
 
 

@@ -140,7 +140,7 @@ def run(
     workers: int | None = None,
     hours: float | None = None,
 ) -> Path:
-    """Evaluate what is missing of ``samples`` samples, store the summary among the baselines and return its path."""
+    """Evaluate what is missing of ``samples`` samples, store the summary and return its path."""
     lines = results / "study" / f"{experiment}.jsonl"
     lines.parent.mkdir(parents=True, exist_ok=True)
     done = {entry["index"] for entry in _read(lines)}
@@ -149,7 +149,7 @@ def run(
     with pool(workers) as submit:
         for future in as_completed([submit(contribute, chapter, experiment, i, lines, deadline) for i in missing]):
             future.result()
-    target = summary_file(experiment)
+    target = summary_file(experiment, results)
     target.parent.mkdir(parents=True, exist_ok=True)
     with locked(lines.parent):  # who ends last sees every sample
         entries = [entry for entry in _read(lines) if entry["index"] < samples]
@@ -169,9 +169,9 @@ def contribute(chapter: str, experiment: str, index: int, lines: Path, deadline:
             file.write(b"\n" * cut_short + line.encode())
 
 
-def summary_file(experiment: str) -> Path:
-    """Where the summary of a study is kept."""
-    return baseline_dir() / "study" / f"{experiment}.json"
+def summary_file(experiment: str, results: Path) -> Path:
+    """Where the summary of a study is kept: in a checkout, beside the stored baselines."""
+    return results / "baselines" / "study" / f"{experiment}.json"
 
 
 def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -196,9 +196,10 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
             "varied": varied, "claims": claims}  # fmt: skip
 
 
-def stored() -> list[dict[str, Any]]:
-    """Every study stored among the baselines."""
-    return [read_json(path) for path in sorted((baseline_dir() / "study").glob("*.json"))]
+def stored(results: Path) -> list[dict[str, Any]]:
+    """Every study there is: those shipped, and in their place those made again in the user's own results."""
+    paths = [*(baseline_dir() / "study").glob("*.json"), *(results / "baselines" / "study").glob("*.json")]
+    return [read_json(path) for _, path in sorted({path.name: path for path in paths}.items())]
 
 
 def _most_influential(margins: Any, values: Sequence[Mapping[str, float]]) -> tuple[str | None, float | None]:

@@ -155,6 +155,20 @@ def test_every_launcher_runs_a_sweep(shell: Shell, tmp_path: Path, command: str)
     assert len(list((tmp_path / "results/runs").glob("movement_estimation-*/metrics.json"))) == 2
 
 
+STUDIES = [command for command in COMMANDS + SCALING if " study " in command]
+
+
+@pytest.mark.parametrize("command", STUDIES)
+def test_every_study_counts(shell: Shell, tmp_path: Path, command: str) -> None:
+    few = re.sub(r"samples=\d+", "samples=2", command).replace("jobs=20", "jobs=2")
+    if "submitit_slurm" in command and not HAS_SLURM:
+        few = few.replace("submitit_slurm", "joblib")
+    done = shell(few)
+    assert done.returncode == 0, done.stderr
+    assert "C7.01: holds in" in done.stdout
+    assert json.loads(next(tmp_path.glob("results/baselines/study/*.json")).read_text())["samples"] == 2
+
+
 def test_the_script_for_slurm_runs_a_sweep_like_that_of_the_readme() -> None:
     script = (ROOT / SCALING[-1]).read_text()
     assert "dexrepro run -m" in script

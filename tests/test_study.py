@@ -16,7 +16,7 @@ RESULTS = Path("results")
 
 @pytest.fixture
 def folder(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(study, "baseline_dir", lambda: toy / "baselines")
+    monkeypatch.setattr(study, "baseline_dir", lambda: toy / "shipped")
     return toy
 
 
@@ -70,6 +70,15 @@ def test_a_study_resumes_and_survives_a_line_cut_short(folder: Path) -> None:
     study.run("90", "decay", 6, RESULTS, workers=1)
     assert lines.read_text().startswith("".join(kept[:3]))
     assert sorted(entry["index"] for entry in study._read(lines)) == list(range(6))
+
+
+def test_a_study_made_again_takes_the_place_of_the_one_shipped(folder: Path) -> None:
+    path = study.run("90", "decay", 4, RESULTS, workers=1)
+    assert path == RESULTS / "baselines/study/decay.json"
+    (folder / "shipped/study").mkdir(parents=True)
+    for name, samples in (("decay", 3), ("other", 7)):
+        (folder / f"shipped/study/{name}.json").write_text(f'{{"samples": {samples}}}')
+    assert [item["samples"] for item in study.stored(RESULTS)] == [4, 7]
 
 
 def test_an_unknown_claim_is_refused(folder: Path) -> None:

@@ -55,7 +55,7 @@ class _Report:
         self.templates = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True)
         self.templates.filters["breakable"] = _breakable
         self.search: list[dict[str, str]] = []
-        self.studies = {item["experiment"]: item for item in study.stored()}
+        self.studies = {item["experiment"]: item for item in study.stored(results)}
 
     def write(self) -> None:
         book = [self._chapter(number) for number in chapters.numbers()]

@@ -55,7 +55,6 @@ def test_the_report_shows_stored_studies(summary: dict, toy: Path, monkeypatch: 
 def test_the_command_says_where_the_drawing_is(
     toy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(study, "baseline_dir", lambda: toy / "baselines")
     monkeypatch.setattr(cli, "out", Console(width=200, highlight=False))
     assert cli.main(["study", "chapter=90", "samples=2", "workers=1"]) == 0
     assert "drawn in results/study/decay.svg" in capsys.readouterr().out
