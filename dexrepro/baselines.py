@@ -1,6 +1,6 @@
 """Stored metrics and verdicts: compare results with them (never simulating), and renew them.
 
-A tolerance says how sensitive a number is: ``update`` reruns each case with the initial state moved by ``PERTURBATION``
+A tolerance says how sensitive a number is: ``update`` reruns each case with the initial state moved by ``PERTURBATIONS``
 and keeps ``rtol = max(1e-3, 10 x the relative change)``, likewise ``atol`` for metrics near zero. Counts are exact
 unless that rerun changes them. A tolerance with a "reason" was set by hand and survives updates.
 """
@@ -18,7 +18,7 @@ from dexrepro.progress import Progress
 from dexrepro.runner import plan_chapter, run_plans
 from dexrepro.storage import read_json, write_json
 
-PERTURBATION = 1e-9  # rad, or share of the input data's range
+PERTURBATIONS = (1e-9, -1e-9)  # rad, or share of the input data's range; two, as one may hit the same branch by luck
 RTOL = 1e-3
 ATOL = 1e-9
 NEAR_ZERO = 1e-6
@@ -133,20 +133,22 @@ def update_chapter(
     """
     overrides = [f"results='{results}'"]
     plans, skipped = plan_chapter(chapter, overrides)
-    moved, _ = plan_chapter(chapter, overrides, perturbation=PERTURBATION)
-    for plan in moved:
-        plan.folder = results / ".cache" / "perturbed" / plan.experiment
-    for which in (plans, moved):
+    moved = [plan_chapter(chapter, overrides, perturbation=size)[0] for size in PERTURBATIONS]
+    for number, group in enumerate(moved):
+        for plan in group:
+            plan.folder = results / ".cache" / f"perturbed{number}" / plan.experiment
+    for which in (plans, *moved):
         outcome = run_plans(which, workers=workers, force=False, progress=progress)
         if outcome.failures:
             raise InputError("; ".join(f"{name}: {text}" for name, text in outcome.failures.items()))
     old = read(chapter)
     new: dict[str, Any] = {"chapter": chapter, "metrics": {}, "claims": {}}
-    for plan, perturbed in zip(plans, moved, strict=True):
-        metrics, disturbed = (read_json(p.folder / "metrics.json") for p in (plan, perturbed))
+    for plan, *perturbed in zip(plans, *moved, strict=True):
+        metrics, *disturbed = (read_json(p.folder / "metrics.json") for p in (plan, *perturbed))
         stored = old["metrics"].get(plan.experiment, {})
         new["metrics"][plan.experiment] = {
-            name: _entry(value, disturbed.get(name), stored.get(name)) for name, value in metrics.items()
+            name: _entry(value, [other.get(name) for other in disturbed], stored.get(name))
+            for name, value in metrics.items()
         }
         for claim in read_json(plan.folder / "claims.json"):
             new["claims"][claim["id"]] = claim["verdict"]
@@ -170,12 +172,13 @@ def update_chapter(
     return [f"{key}: {before} -> {after}" for key, (before, after) in changed.items()] + _sensitive(new)
 
 
-def _entry(value: float | None, disturbed: float | None, stored: Mapping[str, Any] | None) -> dict[str, Any]:
+def _entry(value: float | None, disturbed: Sequence[float | None], stored: Mapping[str, Any] | None) -> dict[str, Any]:
     if stored and stored.get("reason"):
         return {**stored, "value": value}
-    if value is None or disturbed is None:
+    known = [other for other in disturbed if other is not None]
+    if value is None or not known:
         return {"value": value, "rtol": 0.0, "atol": 0.0}
-    change = abs(disturbed - value)
+    change = max(abs(other - value) for other in known)
     if isinstance(value, int):
         return {"value": value, "rtol": 0.0, "atol": _rounded(10 * change)}
     if abs(value) < NEAR_ZERO:

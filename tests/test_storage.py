@@ -7,7 +7,12 @@ import os
 import signal
 from pathlib import Path
 
-from dexrepro.storage import _owner, claimed, remove_leftovers, whole_folder
+import numpy as np
+import pandas as pd
+import pytest
+
+from dexrepro.experiment import Recording
+from dexrepro.storage import _owner, claimed, load_recording, remove_leftovers, save_recording, whole_folder
 
 
 def claim_and_wait(folder: Path, ready) -> None:
@@ -43,3 +48,13 @@ def test_leftovers_of_dead_processes_go_and_those_of_other_machines_stay(tmp_pat
     assert elsewhere.exists()
     assert (tmp_path / "case").exists()
     assert os.getpid() == int(_owner().partition("@")[0])
+
+
+@pytest.mark.parametrize("columns", [["a", "b"], [1, 2], ["with, comma", "plain"]])
+@pytest.mark.parametrize("missing", [False, True])
+def test_a_frame_comes_back_whatever_its_columns(tmp_path: Path, columns: list[object], missing: bool) -> None:
+    frame = pd.DataFrame([[0.1, 1e-12], [np.nan if missing else 2.0, -3.0]], columns=columns)
+    save_recording(Recording(frames={"table": frame}), tmp_path, "case", 100.0)
+    back = load_recording(tmp_path, "case").frames["table"]
+    assert list(back.columns) == [str(column) for column in columns]
+    np.testing.assert_array_equal(back.to_numpy(), frame.to_numpy())
