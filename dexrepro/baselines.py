@@ -1,8 +1,8 @@
 """Stored metrics and verdicts: compare results with them (never simulating), and renew them.
 
-A tolerance says how sensitive a number is: ``update`` reruns each case with the initial state moved by ``PERTURBATIONS``
-and keeps ``rtol = max(1e-3, 10 x the relative change)``, likewise ``atol`` for metrics near zero. Counts are exact
-unless that rerun changes them. A tolerance with a "reason" was set by hand and survives updates.
+A tolerance says how sensitive a number is: ``update`` reruns each case with the initial state moved by each of
+``PERTURBATIONS`` and keeps ``rtol = max(1e-3, 10 x the largest relative change)``, likewise ``atol`` for metrics near
+zero. Counts are exact unless a rerun changes them. A tolerance with a "reason" was set by hand and survives updates.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dexrepro.progress import Progress
 from dexrepro.runner import plan_chapter, run_plans
 from dexrepro.storage import read_json, write_json
 
-PERTURBATIONS = (1e-9, -1e-9)  # rad, or share of the input data's range; two, as one may hit the same branch by luck
+PERTURBATIONS = (1e-9, -1e-9)  # rad, or share of the input data's range; one may take the same branch by luck
 RTOL = 1e-3
 ATOL = 1e-9
 NEAR_ZERO = 1e-6
