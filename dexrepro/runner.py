@@ -27,7 +27,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from dexrepro import __version__, chapters
 from dexrepro.config import (
@@ -50,10 +49,12 @@ from dexrepro.storage import (
     load_recording,
     locked,
     read_json,
+    read_yaml,
     remove_leftovers,
     save_recording,
     whole_folder,
     write_json,
+    write_yaml,
 )
 
 PACKAGES = ("numpy", "scipy", "pybullet", "pandas", "matplotlib", "hydra-core")
@@ -348,7 +349,7 @@ def assemble(plan: Plan) -> None:
         for job in plan.jobs:
             for path in sorted((Path(job.folder) / "series").glob("*")):
                 _link(path, folder / "series" / path.name)
-        (folder / "config.yaml").write_text(yaml.safe_dump(finite(config), sort_keys=False, allow_unicode=True))
+        write_yaml(folder / "config.yaml", config)
         write_json(folder / "metrics.json", flat(experiment.name, nested))
         write_json(folder / "run.json", _run_entry(plan, {case: data["entry"] for case, data in cases.items()}))
         present(plan.chapter, experiment, folder)
@@ -377,7 +378,7 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
 
     run = read_json(folder / "run.json")
     flat_metrics = read_json(folder / "metrics.json")
-    config = Config.of(yaml.safe_load((folder / "config.yaml").read_text()))
+    config = Config.of(read_yaml(folder / "config.yaml"))
     nested: dict[str, Metrics] = {case: {} for case in run["cases"]}
     for name, value in flat_metrics.items():
         _, first, *rest = name.split(".", 2)

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import yaml
 
 from dexrepro.experiment import Recording
 
@@ -76,6 +77,17 @@ def claimed(folder: Path, name: str, wait: bool = True) -> Iterator[bool]:
             yield False
         else:
             yield True
+
+
+def read_yaml(path: Path) -> Any:
+    """The content of a YAML file, parsed in C where the library has it."""
+    return yaml.load(path.read_text(), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+
+
+def write_yaml(path: Path, data: Any) -> None:
+    """Write YAML, keys in the order given."""
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+    path.write_text(yaml.dump(finite(data), Dumper=dumper, sort_keys=False, allow_unicode=True))
 
 
 def write_json(path: Path, data: Any) -> None:

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
@@ -19,7 +18,7 @@ from dexrepro.experiment import Config, Experiment, Film, Recording
 from dexrepro.physics import rendering
 from dexrepro.report import style
 from dexrepro.runner import live
-from dexrepro.storage import load_recording, read_json
+from dexrepro.storage import load_recording, read_json, read_yaml
 
 SIZE = (400, 330)
 FRAMES = 60  # at the most
@@ -47,7 +46,7 @@ def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
         raise InputError(f"unknown case '{case}' of {experiment.name}: {nearest(case, cases)}")
     chosen = case or (experiment.film.case if experiment.film and experiment.film.case in cases else None)
     recording, chosen = _recording(folder, experiment, [chosen] if chosen else list(cases))
-    raw = yaml.safe_load((folder / "config.yaml").read_text())["cases"][chosen]
+    raw = read_yaml(folder / "config.yaml")["cases"][chosen]
     target = folder / "animation" / f"{chosen}.{kind}"
     target.parent.mkdir(exist_ok=True)
     raw |= {"law": None} if "law" in raw else {}  # a scene needs none, and the user's may be in another folder

@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-import yaml
 
 from dexrepro.config import InputError, differences
 from dexrepro.report import style
-from dexrepro.storage import load_recording, read_json
+from dexrepro.storage import load_recording, read_json, read_yaml
 
 PANELS = 6
 
@@ -25,7 +24,7 @@ def compare(a: Path, b: Path) -> Iterator[str]:
             raise InputError(f"{folder} holds no result (no metrics.json)")
     yield from (
         f"config   {line.replace('book', str(b))}"
-        for line in differences(*(yaml.safe_load((folder / "config.yaml").read_text()) for folder in (a, b)))
+        for line in differences(*(read_yaml(folder / "config.yaml") for folder in (a, b)))
     )
     mine, theirs = (read_json(folder / "metrics.json") for folder in (a, b))
     for name in dict.fromkeys([*mine, *theirs]):

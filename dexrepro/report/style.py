@@ -176,6 +176,8 @@ def file_stem(figure_id: str) -> str:
 def save(figure: Figure, folder: Path, figure_id: str) -> None:
     """Write PNG (200 dpi) and SVG (text as text), free of dates, and close the figure."""
     stem = folder / file_stem(figure_id)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # laid out once, for both files
     figure.savefig(stem.with_suffix(".png"), metadata={"Software": None})
     figure.savefig(stem.with_suffix(".svg"), metadata={"Date": None, "Creator": "dexrepro"})
     plt.close(figure)

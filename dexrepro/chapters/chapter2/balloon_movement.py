@@ -16,7 +16,7 @@ from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 FIGURES = {
     "2.9c": Figure(
         "Path of the partner's gripper on the simulated Baxter (synthetic operator): a line in three directions, then "
-        "two laps of a circle, ours in place of the book's drawing.",
+        "a lap of a circle, ours in place of the book's drawing.",
         "The partner's path is a straight line followed by a circle.",
     ),
     "2.11": Figure(
@@ -31,7 +31,7 @@ RATE = 20.0
 
 scene, stage = balloon_pair.scene, balloon_pair.stage
 FILM = Film(
-    "proposed", "The follower, which feels only the force, holds the balloon along a line and two laps of a circle.",
+    "proposed", "The follower, which feels only the force, holds the balloon along a line and a lap of a circle.",
     balloon_pair.VIEW, "object.force", "Holding force [N]", reference=10.0,
 )  # fmt: skip
 
