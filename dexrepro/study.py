@@ -7,7 +7,6 @@ started any number of times, on any machine that shares the results folder: its 
 
 from __future__ import annotations
 
-import copy
 import json
 import re
 import time
@@ -51,13 +50,12 @@ def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list
 
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the margin, in a summary
-_shipped = cache(compose_chapter)
 
 
 @cache
 def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
     """Parameters with a declared range that an experiment uses: its own, and the shared ones it refers to."""
-    composed = _shipped(chapter)
+    composed = compose_chapter(chapter)
     referred = _references(composed, composed[experiment])
     found = {}
     for key, origin in provenance(chapter).items():
@@ -83,7 +81,7 @@ def _references(composed: Mapping[str, Any], node: Any) -> set[str]:
 
 def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float], dict[str, Any]]:
     """Sample number ``index``: the values drawn, and under them the experiment's block with all its ``cases``."""
-    composed = copy.deepcopy(_shipped(chapter))
+    composed = compose_chapter(chapter)
     rng = generator(index, experiment, "study")
     values: dict[str, float] = {}
     for key, origin in parameters(chapter, experiment).items():

@@ -7,7 +7,7 @@ set -euo pipefail
 if ! command -v slurmctld slurmd munged > /dev/null; then
     apt-get update -q > /dev/null && apt-get install -y -q --no-install-recommends slurm-wlm munge > /dev/null
 fi
-folder=$(mktemp -d /var/tmp/dexrepro-slurm-XXXXXX)
+folder=$(mktemp -d)
 node=$(hostname -s)
 daemons=()
 

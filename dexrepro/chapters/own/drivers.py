@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import math
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from dexrepro.robots.inverse_kinematics import InverseKinematics
 Array = NDArray[np.float64]
 
 
-class Driver:
+class Driver(ABC):
     """Joint torques from what the arm senses; ``reference`` is where the end point should be (3,) [m].
 
     law: the user's; config: the scene's; path: of the leader; start: joint angles (n,) [rad].
@@ -50,8 +51,9 @@ class Driver:
         gravity = self.model.gravity(sense.position)
         return (command[0] + gravity, command[1]) if isinstance(command, tuple) else command + gravity
 
+    @abstractmethod
     def torque(self, sense: Sense) -> Any:
-        raise NotImplementedError
+        """Joint torques (n,) [N m], or torques and an implicit damping, before the scene compensates gravity."""
 
     def motion(self, time: float) -> Motion:
         """The leader's motion at the distance ``offset``."""

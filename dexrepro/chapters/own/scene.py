@@ -27,7 +27,6 @@ FIGURES = {
     "own.A": Figure("Path of the end point, its distance from where it should be, and the force along the line.")
 }
 TABLES = {"own.T": "Tracking, force and torque of every case"}
-WATCHED = ("force_along", "Force along the line [N]")
 CHECKED = 25  # points of the path whose reach is checked
 
 
