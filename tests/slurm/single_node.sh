@@ -83,9 +83,10 @@ echo "\$ ${sweep[*]}"
 parent=$!
 for _ in $(seq 240); do [ "$(results | wc -l)" -ge 4 ] && break || sleep 0.5; done
 squeue
-until victim=$(pgrep -n -f "^[^ ]*python[^ ]* -u -m submitit.core._submit $folder"); do sleep 0.2; done
-echo "killing process $victim, job $(tr '\0' '\n' < "/proc/$victim/environ" | sed -n 's/^SLURM_ARRAY_TASK_ID=//p')"
-kill -KILL "$victim"
+task() { tr '\0' '\n' < "/proc/$1/environ" | sed -n 's/^SLURM_ARRAY_TASK_ID=//p'; }
+until victim=$(pgrep -n -f "^[^ ]*python[^ ]* -u -m submitit.core._submit $folder") &&
+    job=$(task "$victim" 2> /dev/null) && [ -n "$job" ] && kill -KILL "$victim" 2> /dev/null; do sleep 0.2; done
+echo "killed process $victim, job $job"
 wait $parent && status=0 || status=$?
 echo "exit status $status: $(tail -n 1 killed.log)"
 while [ -n "$(squeue -h)" ]; do sleep 1; done
