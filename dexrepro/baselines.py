@@ -14,7 +14,6 @@ from typing import Any
 
 from dexrepro import chapters
 from dexrepro.config import InputError
-from dexrepro.progress import Progress
 from dexrepro.runner import plan_chapter, run_plans
 from dexrepro.storage import read_json, write_json
 
@@ -124,9 +123,7 @@ def is_ok(report: Mapping[str, Any]) -> bool:
 # --------------------------------------------------------------------------------------------------------- updating
 
 
-def update_chapter(
-    chapter: str, results: Path, *, accept: Sequence[str], workers: int | None, progress: Progress | None = None
-) -> list[str]:
+def update_chapter(chapter: str, results: Path, *, accept: Sequence[str], workers: int | None) -> list[str]:
     """Run the chapter as shipped and perturbed, and store metrics, tolerances and verdicts.
 
     Returns what changed, a line each. Raises InputError where a verdict changed that is not in ``accept``.
@@ -138,7 +135,7 @@ def update_chapter(
         for plan in group:
             plan.folder = results / ".cache" / f"perturbed{number}" / plan.experiment
     for which in (plans, *moved):
-        outcome = run_plans(which, workers=workers, force=False, progress=progress)
+        outcome = run_plans(which, workers=workers, force=False)
         if outcome.failures:
             raise InputError("; ".join(f"{name}: {text}" for name, text in outcome.failures.items()))
     old = read(chapter)

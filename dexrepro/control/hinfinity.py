@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigvals, solve_continuous_are
+from scipy.linalg import solve_continuous_are
 
 from dexrepro.control.task_space import ArmState, Motion
 
@@ -41,26 +41,6 @@ def hinfinity_gain(weights: Sequence[float], effort: float, attenuation: float) 
     game_effort = np.array([[1.0 / (1.0 / effort - attenuation**-2)]])
     value = solve_continuous_are(system, control, np.diag(np.asarray(weights, float)), game_effort)
     return (control.T @ value / effort).ravel()
-
-
-def achieved_norm(gain: Array, weights: Sequence[float], effort: float) -> float:
-    """H-infinity norm from the disturbance to [sqrt(Q) e, sqrt(r) u] under u = -K e, by bisection."""
-    system, control = integrator_chain(len(weights))
-    closed = system - control @ gain[None, :]
-    output = np.diag(np.asarray(weights, float)) + effort * np.outer(gain, gain)
-    low, high = 0.0, 1.0
-
-    def exceeded(level: float) -> bool:
-        hamiltonian = np.block([[closed, control @ control.T / level**2], [-output, -closed.T]])
-        roots = eigvals(hamiltonian)
-        return bool(np.any(np.abs(roots.real) < 1e-8 * np.abs(roots)))
-
-    while exceeded(high):
-        low, high = high, 2.0 * high
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if exceeded(middle) else (low, middle)
-    return high
 
 
 class HInfinityTracking:

@@ -203,18 +203,14 @@ class InteractionLaw:
     def reset(self) -> None:
         self.gain.reset()
         self.surface: float | None = None
-        self.touched_at: float | None = None
         self.desired_force = 0.0
         self.state = Reference(0.0, 0.0, 0.0)
-        self._steps = 0
 
     def __call__(self, desired: Reference, position: float, force: float) -> Reference:
         """Virtual reference for the desired motion, the measured position [m] and force on the robot [N]."""
         dt = self.reference.dt
-        self._steps += 1
         if self.surface is None and abs(force) > self.contact_force:
-            self.surface, self.touched_at = position + self.surface_error, (self._steps - 1) * dt
-            self.state = desired
+            self.surface, self.state = position + self.surface_error, desired
         if self.surface is None:
             self.desired_force = 0.0
             return desired

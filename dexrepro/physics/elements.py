@@ -98,8 +98,8 @@ class Elastic:
 class TipForce:
     """A force on an arm's end point (or a body's centre) that depends on time and its state: a wall, a sponge, a field.
 
-    ``law``(time, position (3,), velocity (3,)) -> force (3,), world frame [s, m, m/s, N]. A sensed force is one that
-    the arm's force sensor reports. Channels: x, y, z [N].
+    ``law``(time, position (3,), velocity (3,)) -> force (3,), world frame [s, m, m/s, N]. An arm's force sensor
+    feels it. Channels: x, y, z [N].
     """
 
     def __init__(
@@ -107,21 +107,19 @@ class TipForce:
         name: str,
         on: str,
         law: Callable[[float, NDArray[np.float64], NDArray[np.float64]], Force],
-        sensed: bool = True,
     ) -> None:
-        self.name, self.on, self.law, self.sensed = name, on, law, sensed
+        self.name, self.on, self.law = name, on, law
         self.force = (0.0, 0.0, 0.0)
 
     def bind(self, world: Ends) -> Callable[[float], None]:
         end = world.end(self.on)
-        push = end.push if self.sensed or not isinstance(end, SimulatedArm) else end.push_unsensed
 
         def apply(time: float) -> None:
             position, velocity = np.array((end.x, end.y, end.z)), np.array((end.vx, end.vy, end.vz))
             x, y, z = self.law(time, position, velocity)
             self.force = float(x), float(y), float(z)
             if any(self.force):
-                push(*self.force)
+                end.push(*self.force)
 
         return apply
 
@@ -132,8 +130,8 @@ class TipForce:
 class Push:
     """A push on an arm as a function of time: ``force``(time) -> (3,), world frame [N].
 
-    It acts at ``point`` [m] in the frame of ``link``, or at the end point where no link is named. A wrist sensor does
-    not feel it unless ``sensed`` says so. Channels: x, y, z [N].
+    It acts at ``point`` [m] in the frame of ``link``, or at the end point where no link is named; a wrist sensor
+    does not feel it. Channels: x, y, z [N].
     """
 
     def __init__(
@@ -142,17 +140,14 @@ class Push:
         force: Callable[[float], Force],
         link: str | None = None,
         point: tuple[float, float, float] = (0.0, 0.0, 0.0),
-        sensed: bool = False,
         name: str = "push",
     ) -> None:
-        if sensed and link:
-            raise ValueError("a push on a link cannot be felt by the sensor at the end point")
-        self.name, self._arm, self._law, self._link, self._point, self._sensed = name, arm, force, link, point, sensed
+        self.name, self._arm, self._law, self._link, self._point = name, arm, force, link, point
         self.force = (0.0, 0.0, 0.0)
 
     def bind(self, world: Ends) -> Callable[[float], None]:
         arm = world.arm(self._arm)
-        link, point, push = self._link, self._point, arm.push if self._sensed else arm.push_unsensed
+        link, point = self._link, self._point
 
         def apply(time: float) -> None:
             x, y, z = self._law(time)
@@ -160,7 +155,7 @@ class Push:
             if not any(self.force):
                 return
             if link is None:
-                push(*self.force)
+                arm.push_unsensed(*self.force)
             else:
                 arm.push_link(link, point, self.force)
 
@@ -198,8 +193,8 @@ class JointLoad:
     angles and rates are lists of n floats [rad, rad/s]; the law works on them at every physics step.
     """
 
-    def __init__(self, arm: str, law: Callable[[float, list[float], list[float]], Any], name: str = "friction") -> None:
-        self.name, self._arm, self._law = name, arm, law
+    def __init__(self, arm: str, law: Callable[[float, list[float], list[float]], Any]) -> None:
+        self.name, self._arm, self._law = "load", arm, law
 
     def bind(self, world: Ends) -> Callable[[float], None]:
         arm, law = world.arm(self._arm), self._law

@@ -119,7 +119,6 @@ class SimulatedArm(Point):
         position: NDArray[np.float64],
         sensor: Sensor,
         rng: np.random.Generator | None,
-        saturate: bool,
     ) -> None:
         super().__init__((0.0, 0.0, 0.0))
         self.client, self.name, self.arm, self.dof = client, name, arm, arm.dof
@@ -128,7 +127,7 @@ class SimulatedArm(Point):
         self.feels_contact = False
         self._indices = list(range(arm.dof))
         self._zeros = [0.0] * arm.dof
-        self.limits: list[float] | None = arm.effort.tolist() if saturate and np.isfinite(arm.effort).any() else None
+        self.limits: list[float] | None = arm.effort.tolist() if np.isfinite(arm.effort).any() else None
         self._sensor, self._rng = sensor, rng
         self.force_channel: ForceChannel | None = None
         self.joint_channel: JointChannel | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pybullet as bullet
@@ -16,27 +16,19 @@ from dexrepro.physics.loading import connect, undamped
 from dexrepro.physics.plant import Controller, Point, RigidBody, SimulatedArm, Touch, touches
 from dexrepro.physics.rendering import Camera, Overhead, look_down, photograph
 from dexrepro.physics.sensor import Sensor
-from dexrepro.robots.arm import GREY, Arm, Colour, Pose, Shape
+from dexrepro.robots.arm import GREY, Arm, Colour, Shape
 
 Vector = Sequence[float]
 SHAPES = {"box": bullet.GEOM_BOX, "sphere": bullet.GEOM_SPHERE, "cylinder": bullet.GEOM_CYLINDER,
           "capsule": bullet.GEOM_CAPSULE}  # fmt: skip
 
 
-class Contact(NamedTuple):
-    """One touching point: names of the links in question, place (3,) on the second body [m], force [N]."""
-
-    link: str
-    position: tuple[float, float, float]
-    force: float
-
-
 class World:
     """One physics client of its own, closed at the end of a ``with`` block; several may live side by side.
 
     step: physics step [s]; gravity: (3,) [m/s^2]; perturbation: added to every initial joint angle [rad];
-    gui: open a window and run in real time; iterations: of the contact solver.
-    The world frame has z up; positions in m, forces in N. Setting ``World.live`` makes every world open a window.
+    iterations: of the contact solver. The world frame has z up; positions in m, forces in N. Setting ``World.live``
+    makes every world open a window and run in real time.
     """
 
     live = False
@@ -46,10 +38,9 @@ class World:
         step: float = 1e-3,
         gravity: Vector = (0.0, 0.0, -9.81),
         perturbation: float = 0.0,
-        gui: bool = False,
         iterations: int = 50,
     ) -> None:
-        self.step, self.time, self.gui = step, 0.0, gui or World.live
+        self.step, self.time, self.gui = step, 0.0, World.live
         self.perturbation = perturbation
         self.client = connect(self.gui)
         bullet.setGravity(*gravity, physicsClientId=self.client)
@@ -81,17 +72,15 @@ class World:
         contacts: bool = False,
         sensor: Sensor = Sensor(),
         rng: np.random.Generator | None = None,
-        saturate: bool = True,
     ) -> SimulatedArm:
         """Place an arm with initial joint angles (n,) [rad], at rest.
 
         contacts: whether its links touch other bodies (if so its force sensor feels contacts of the last link and
-        the tool). sensor, rng: imperfections of its sensors and the generator of their noise. saturate: clip torques
-        at the arm's effort limits.
+        the tool). sensor, rng: imperfections of its sensors and the generator of their noise.
         """
         self._check_new(name)
         start = np.asarray(position, dtype=float) + self.perturbation
-        plant = SimulatedArm(self.client, name, arm, start, sensor, rng, saturate)
+        plant = SimulatedArm(self.client, name, arm, start, sensor, rng)
         plant.feels_contact = contacts
         if not contacts:
             self._untouchable(plant.body)
@@ -142,26 +131,6 @@ class World:
         """A sphere of a radius [m], centred at a position [m]; options as for add_body."""
         return self.add_body(name, [Shape("sphere", (radius,), colour=colour)], position, mass=mass, **options)
 
-    def add_opening(
-        self,
-        name: str,
-        size: tuple[float, float],
-        position: Vector,
-        rim: float = 0.05,
-        depth: float = 0.01,
-        colour: Colour = GREY,
-        **options: Any,
-    ) -> RigidBody:
-        """A static frame around a rectangular hole of a size (x, y) [m] in the plane z of its own frame.
-
-        rim: width of the frame around the hole [m]; depth: its thickness [m]; options as for add_body (rpy turns it).
-        """
-        x, y = size
-        beams = [((x + rim) / 2 * side, 0.0, 0.0, rim, y) for side in (-1, 1)]
-        beams += [(0.0, (y + rim) / 2 * side, 0.0, x + 2 * rim, rim) for side in (-1, 1)]
-        shapes = [Shape("box", (long, wide, depth), Pose((a, b, c)), colour) for a, b, c, long, wide in beams]
-        return self.add_body(name, shapes, position, **options)
-
     def hang(
         self,
         name: str,
@@ -171,7 +140,6 @@ class World:
         radius: float = 0.05,
         inertia: float = 2e-3,
         angular_damping: float = 0.0,
-        colour: Colour = GREY,
     ) -> RigidBody:
         """Hang a sphere (mass [kg], moment of inertia [kg m^2]) on a ball joint at an arm's end point.
 
@@ -181,7 +149,7 @@ class World:
         plant.read()
         plant.locate()
         body = self.add_sphere(
-            name, radius, (plant.x, plant.y, plant.z - drop), mass, colour, collides=False, inertia=[inertia] * 3,
+            name, radius, (plant.x, plant.y, plant.z - drop), mass, collides=False, inertia=[inertia] * 3,
             angularDamping=angular_damping,
         )  # fmt: skip
         bullet.createConstraint(
@@ -217,21 +185,14 @@ class World:
         """Rigid bodies that are not static."""
         return {name: body for name, body in self.bodies.items() if body.mass > 0}
 
-    def contacts(self, first: str, second: str | None = None) -> list[Contact]:
-        """Points where a named body touches another one (or anything), as of the last step."""
-        links = self.arms[first].links if first in self.arms else []
-        points = self._touches(first, second)
-        return [
-            Contact(links[t.link] if 0 <= t.link < len(links) else "base", t.position, t.normal_force) for t in points
-        ]
+    def contacts(self, name: str) -> list[Touch]:
+        """Points where a named body touches anything, as of the last step."""
+        return touches(self.client, self._body(name))
 
-    def contact_force(self, first: str, second: str | None = None) -> float:
+    def contact_force(self, first: str, second: str) -> float:
         """Sum of the normal forces between two named bodies [N], as of the last step."""
-        return sum(touch.normal_force for touch in self._touches(first, second))
-
-    def contact_vector(self, first: str, second: str | None = None) -> NDArray[np.float64]:
-        """Contact force on the first body, friction included, shape (3,), world frame [N], as of the last step."""
-        return np.sum([touch.force for touch in self._touches(first, second)] or [(0.0, 0.0, 0.0)], axis=0)
+        other = self._body(second)
+        return sum(touch.normal_force for touch in self.contacts(first) if touch.other == other)
 
     def distance(self, first: str, second: str, limit: float = 1.0) -> float:
         """Smallest distance between two named bodies [m], negative where they overlap, at most ``limit``."""
@@ -310,10 +271,6 @@ class World:
             plant.body, plant.end.link, held.body, -1, bullet.JOINT_FIXED, (0, 0, 0), place, (0, 0, 0), turn,
             physicsClientId=self.client,
         )  # fmt: skip
-
-    def _touches(self, first: str, second: str | None) -> list[Touch]:
-        found = touches(self.client, self._body(first))
-        return found if second is None else [touch for touch in found if touch.other == self._body(second)]
 
     def snapshot(
         self, recording: Recording, time: float, camera: Camera = Camera(), size: tuple[int, int] = (640, 480)

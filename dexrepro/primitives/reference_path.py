@@ -24,14 +24,12 @@ def chord_length(points: ArrayLike) -> Array:
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
 
 
-def differentiable(time: Array, points: Array, at: Array, start: Array | None = None) -> Reference:
-    """Twice differentiable reference through samples: a cubic spline over time that ends at rest.
+def differentiable(time: Array, points: Array, at: Array) -> Reference:
+    """Twice differentiable reference through samples: a cubic spline over time that starts and ends at rest.
 
-    The stabilising function needs the acceleration of x^c (Assumption 6.2). ``start`` is the initial velocity
-    (default: at rest).
+    The stabilising function needs the acceleration of x^c (Assumption 6.2).
     """
-    first = np.zeros_like(points[0]) if start is None else start
-    spline = CubicSpline(time, points, bc_type=((1, first), (1, np.zeros_like(points[0]))))
+    spline = CubicSpline(time, points, bc_type="clamped")
     return Reference(spline(at), spline(at, 1), spline(at, 2))
 
 

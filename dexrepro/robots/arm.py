@@ -252,9 +252,6 @@ class Arm:
             for origin, axis in zip(self.origins, (joint.axis for joint in self.joints), strict=True)
         )
 
-    def with_tool(self, tool: Tool | None) -> Arm:
-        return replace(self, tool=tool)
-
     def placed(self, base: Pose) -> Arm:
         """The same arm with its base elsewhere."""
         return replace(self, base=base)

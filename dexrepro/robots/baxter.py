@@ -63,9 +63,9 @@ def baxter(side: str, tool: Tool | None = None, base: Pose = Pose(), mount: Pose
     )
 
 
-def posture(side: str, name: str = "untuck") -> NDArray[np.float64]:
-    """Joint angles [rad], shape (7,), of a pose named in baxter.yaml; the left arm mirrors s0, e0, w0 and w2."""
-    return mirrored(data()["poses"][name], side)
+def posture(side: str) -> NDArray[np.float64]:
+    """Joint angles [rad], shape (7,), of the untucked arm; the left arm mirrors s0, e0, w0 and w2."""
+    return mirrored(data()["poses"]["untuck"], side)
 
 
 def mirrored(right: Any, side: str = "left") -> NDArray[np.float64]:

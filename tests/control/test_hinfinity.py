@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.linalg import eigvals
 
-from dexrepro.control.hinfinity import HInfinityTracking, achieved_norm, hinfinity_gain
+from dexrepro.control.hinfinity import HInfinityTracking, hinfinity_gain, integrator_chain
 from dexrepro.control.task_space import ArmState, Motion
 
 
@@ -31,6 +32,26 @@ def settle(law, plant, duration=2.0, dt=1e-3, push=0.0):
         velocity = velocity + dt * acceleration
         position = position + dt * velocity
     return position
+
+
+def achieved_norm(gain, weights, effort):
+    """H-infinity norm from the disturbance to [sqrt(Q) e, sqrt(r) u] under u = -K e, by bisection."""
+    system, control = integrator_chain(len(weights))
+    closed = system - control @ gain[None, :]
+    output = np.diag(np.asarray(weights, float)) + effort * np.outer(gain, gain)
+    low, high = 0.0, 1.0
+
+    def exceeded(level):
+        hamiltonian = np.block([[closed, control @ control.T / level**2], [-output, -closed.T]])
+        roots = eigvals(hamiltonian)
+        return np.any(np.abs(roots.real) < 1e-8 * np.abs(roots))
+
+    while exceeded(high):
+        low, high = high, 2.0 * high
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if exceeded(middle) else (low, middle)
+    return high
 
 
 def test_the_design_of_the_comparison_has_the_known_gain_and_norm():

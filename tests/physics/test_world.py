@@ -54,7 +54,7 @@ def test_a_step_is_semi_implicit_and_damping_acts_at_its_end(name, damping):
         matrix = root @ root.T
     command = torque if damping is None else (torque, np.diag(matrix) if damping == 5.0 else matrix)
     with World(step=step) as world:
-        world.add_arm("arm", arm, posture("left")[:n], saturate=False)
+        world.add_arm("arm", arm, posture("left")[:n])
         world.add(TipForce("field", "arm", lambda t, x, v: force), JointLoad("arm", lambda t, q, dq: load))
         run = world.run(0.05, {"arm": lambda sense: command})
     model = RigidBodyModel(arm)

@@ -1,5 +1,7 @@
 """Descriptions of arms: bodies that can exist, URDF that engines take as it is."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -61,7 +63,7 @@ def test_capsule_between_two_points_ends_at_them():
 
 def test_tool_without_mass_moves_the_end_point_alone():
     arm = baxter("right")
-    longer = arm.with_tool(Tool(tip=Pose((0.0, 0.0, 0.15))))
+    longer = replace(arm, tool=Tool(tip=Pose((0.0, 0.0, 0.15))))
     assert len(longer.bodies) == len(arm.bodies)
     np.testing.assert_allclose(longer.tip[2, 3] - arm.tip[2, 3], 0.15)
 

@@ -73,9 +73,9 @@ COLUMNS = {
 """What the metrics are called in tables, with their units."""
 
 
-def last(values: Array, samples: int = 100) -> float:
-    """Mean of the last samples."""
-    return float(values[-samples:].mean())
+def last(values: Array) -> float:
+    """Mean of the last 100 samples."""
+    return float(values[-100:].mean())
 
 
 def rms(values: Any) -> float:

@@ -147,5 +147,5 @@ class Touching:
             self._clearance = min(self._world.distance(ARM, name, 0.2) for name in ("lid", "box"))
         self._calls += 1
         touches = self._world.contacts(ARM) if self._clearance < 0.02 else []
-        forces = [touch.force for touch in touches if touch.force > 0.0]
+        forces = [touch.normal_force for touch in touches if touch.normal_force > 0.0]
         return float(len(forces)), sum(forces), self._clearance

@@ -26,30 +26,26 @@ def _both(
     return predicate(ACCURACY), predicate(PRINTED_SIGN)
 
 
-def _accuracy(identifier: str, figure: str, statement: str, metric: str, note: str = "", **limit: float) -> Claim:
+def _accuracy(identifier: str, statement: str, metric: str, note: str = "", **limit: float) -> Claim:
     corrected, printed = _both(metric, **limit)
-    return Claim(identifier, figure, statement, corrected, printed=printed, where="5.5.1", note=note)
+    return Claim(identifier, "5.3", statement, corrected, printed=printed, where="5.5.1", note=note)
 
 
 CLAIMS = (
     _accuracy(
         "C5.01",
-        "5.3",
         "With 5 kernels a DMP tracks the letter badly: more than 5 % of its size.",
         "n5.dmp.mse",
         more_than=0.04,
     ),
     _accuracy(
         "C5.02",
-        "5.3",
         "The DMP+ reduces the error on the same 5 kernels markedly.",
         "n5.dmp_plus.ratio",
         less_than=0.2,
         note="Fitted by least squares like all others; fitted locally, the DMP+ loses (T5.S).",
     ),
-    _accuracy(
-        "C5.03", "5.3", "The IDMP improves on the DMP+ with 5 kernels.", "n5.idmp60.beats_dmp_plus", more_than=0.9
-    ),
+    _accuracy("C5.03", "The IDMP improves on the DMP+ with 5 kernels.", "n5.idmp60.beats_dmp_plus", more_than=0.9),
     Claim(
         "C5.04",
         "5.3",
@@ -59,7 +55,6 @@ CLAIMS = (
     ),
     _accuracy(
         "C5.05",
-        "5.3",
         "The IDMP is the best of the three with 20 kernels (60 added features).",
         "n20.idmp60.beats_dmp_plus",
         more_than=0.9,
@@ -67,15 +62,14 @@ CLAIMS = (
     ),
     _accuracy(
         "C5.06",
-        "5.3",
         "With 20 kernels the IDMP's error is much lower: less than half of the DMP+'s.",
         "n20.idmp60.ratio",
         less_than=0.5,
         note="The tremor that the smoothing leaves in the letters is a floor for every method.",
     ),
-    _accuracy("C5.07", "5.3", "IDMP before DMP+ before DMP, with 5 kernels.", "n5.ordered", more_than=0.9),
+    _accuracy("C5.07", "IDMP before DMP+ before DMP, with 5 kernels.", "n5.ordered", more_than=0.9),
     _accuracy(
-        "C5.30", "5.3", "IDMP before DMP+ before DMP, with 20 kernels.", "n20.ordered", more_than=0.9, note=FEW_FEATURES
+        "C5.30", "IDMP before DMP+ before DMP, with 20 kernels.", "n20.ordered", more_than=0.9, note=FEW_FEATURES
     ),
     Claim(
         "C5.08",

@@ -31,9 +31,9 @@ def demonstrations(
     return [Demonstration.of(time, (1 + config.perturbation) * smoothed(time, p, config.hand.cutoff)) for p in paths]
 
 
-def letter_scaling(config: Config, dimensions: int = 2) -> Scaling:
+def letter_scaling(config: Config) -> Scaling:
     """A = the letter's size on every axis: letters start and end at nearly the same height."""
-    return Scaling(np.zeros(dimensions, dtype=bool), np.full(dimensions, float(config.hand.size)))
+    return Scaling(np.zeros(2, dtype=bool), np.full(2, float(config.hand.size)))
 
 
 def system(config: Config) -> SpringDamper:

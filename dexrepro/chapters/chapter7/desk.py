@@ -208,10 +208,9 @@ def payload_events(world: World, config: Config) -> list[tuple[float, Any]]:
     ]
 
 
-def tip_error(recording: Recording, after: float = 0.0) -> Array:
-    """Distance [mm] of the tip from the plan from a time [s] on."""
-    late = recording.between(after)
-    return 1e3 * np.linalg.norm(recording["arm.tip"][late] - recording["planned"][late], axis=1)
+def tip_error(recording: Recording) -> Array:
+    """Distance [mm] of the tip from the plan."""
+    return 1e3 * np.linalg.norm(recording["arm.tip"] - recording["planned"], axis=1)
 
 
 def tracking_metrics(recording: Recording, config: Config) -> dict[str, float | None]:

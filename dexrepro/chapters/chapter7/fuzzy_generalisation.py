@@ -115,7 +115,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     recording, case = recordings["main"], config.cases.main
     task, old = skills.Reach(case.task.start, case.task.goal), skills.reach(case)
     obstacle = skills.Obstacle(case.task.obstacle, case.task.height, case.scene.cube)
-    figure, plans, sides = pictures.plans_over_sides(2, 2, height=6.4)
+    figure, plans, sides = pictures.plans_over_sides(2, height=6.4)
     level = pictures.joined(figure, plans, sides, 1, 1)
     draw_ordinary(plans[0, 0], sides[0, 0], recordings, case, obstacle)
     for height in (case.scene.low, case.scene.tall):

@@ -64,13 +64,12 @@ def name_directions(axes: Axes, **options: Any) -> None:
     axes.legend(**({"loc": "upper left", "handlelength": 2.2, "borderpad": 0.1} | options))
 
 
-def plans_over_sides(rows: int, columns: int, height: float) -> tuple[Figure, Any, Any]:
-    """A figure of plan views (rows, columns), each with the height over the path below it."""
+def plans_over_sides(columns: int, height: float) -> tuple[Figure, Any, Any]:
+    """A figure of plan views (2, columns), each with the height over the path below it."""
     figure = plt.figure(figsize=(style.TWO_COLUMNS, height))
-    grid = figure.add_gridspec(2 * rows, columns, height_ratios=[2.1, 1.0] * rows)
+    grid = figure.add_gridspec(4, columns, height_ratios=[2.1, 1.0] * 2)
     plans, sides = (
-        np.array([[figure.add_subplot(grid[2 * r + k, c]) for c in range(columns)] for r in range(rows)])
-        for k in (0, 1)
+        np.array([[figure.add_subplot(grid[2 * r + k, c]) for c in range(columns)] for r in range(2)]) for k in (0, 1)
     )
     for panel in plans.flat:
         board(panel, labels=False)

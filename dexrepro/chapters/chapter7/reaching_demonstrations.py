@@ -181,7 +181,7 @@ def draw_paths(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], 
     from dexrepro.report import style
 
     recording, task = recordings["corrected"], skills.reach(config)
-    figure, plans, sides = pictures.plans_over_sides(2, 3, height=5.6)
+    figure, plans, sides = pictures.plans_over_sides(3, height=5.6)
     level = pictures.joined(figure, plans, sides, 0, 1)
     level.plot(recording.time, recording["stiffness"], color="#AAAAAA", linewidth=0.6, linestyle="--")
     level.set(xlabel="Time [s]", ylabel="Stiffness $X^{stf}$ [-]", ylim=(0.02, 0.045))
