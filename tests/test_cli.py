@@ -59,6 +59,7 @@ def test_a_command_of_the_manual_works(shell: Shell, command: str, expected: str
         ("dexrepro run chapter=2 only=movement_estimaton", 2, "did you mean 'movement_estimation'?"),
         ("dexrepro run -m chapter=2 sed=1,2", 2, "unknown key 'sed': did you mean 'seed'?"),
         ("dexrepro run chapter=2 workers=0", 2, "workers = 0 is not allowed"),
+        ("dexrepro check chapter=2 workers=all", 2, "workers = all is not allowed"),
         ("dexrepro check chapter=2", 2, "run: dexrepro run chapter=2"),
         ("dexrepro diff here there", 2, "here holds no result"),
         ("dexrepro draw case=s1", 2, "'case=s1' has no meaning here"),
