@@ -15,13 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import gaussian_filter1d
 from scipy.optimize import brentq
 
+from dexrepro.humans.waypoints import minimum_jerk
+
 Array = NDArray[np.float64]
-
-
-def minimum_jerk(phase: ArrayLike) -> Array:
-    """Progress 0..1 of a straight reach with least jerk at the phase u = t/T in [0, 1]."""
-    u = np.asarray(phase, dtype=float)
-    return u**3 * (10 + u * (6 * u - 15))
 
 
 def bump(phase: ArrayLike, peak: ArrayLike, sharpness: ArrayLike) -> Array:

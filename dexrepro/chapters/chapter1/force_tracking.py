@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter1.followers import PlanarFollower
+from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
@@ -159,10 +160,6 @@ def measure(recording: Recording, config: Config) -> Metrics:
         result |= {"v_start": float(v[0]), "v_end": float(v[-1]), "v_rising": float(np.mean(np.diff(v) > 0))}
         result["weights_end"] = float(np.abs(recording["weights"][-1]).max())
     return result
-
-
-def rms(values: Any) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def summarise(metrics: Any, config: Config) -> Metrics:

@@ -15,6 +15,7 @@ import pandas as pd
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
 from dexrepro.chapters.chapter1.hold_and_move import BALL, FLIP, LEVEL, SIDES, TABLE
+from dexrepro.chapters.measures import rms
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
@@ -105,7 +106,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "switches": int(np.sum(np.abs(np.diff(phase)))),
         "contact": float(time[np.argmax(phase > 0)]) if phase.any() else None,
         "holding_at_end": int(phase[-1]),
-        "rmse": float(np.sqrt(np.mean(error**2))),
+        "rmse": rms(error),
         "bias": float(error.mean()),
     }
 

@@ -17,6 +17,7 @@ from scipy import signal
 
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
+from dexrepro.chapters.measures import rms
 from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.elements import TipForce
@@ -223,8 +224,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
     early = time < config.settled
     outside = np.flatnonzero((np.abs(error) > 0.1 * desired) & early)
     return {
-        "rmse": float(np.sqrt(np.mean(error[late] ** 2))),
-        "rmse_measured": float(np.sqrt(np.mean((recording["measured"] - desired)[late] ** 2))),
+        "rmse": rms(error[late]),
+        "rmse_measured": rms((recording["measured"] - desired)[late]),
         "rise": float(time[rise[0]]) if len(rise) else config.duration,
         "overshoot": float(max(0.0, force[early].max() / desired - 1.0)),
         "settling": float(time[outside[-1]]) if len(outside) else 0.0,

@@ -17,6 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
 from dexrepro.chapters.chapter1.hold_and_move import BALL, FLIP, LEVEL, SIDES, joint_channels
+from dexrepro.chapters.measures import rms
 from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
@@ -221,7 +222,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     shaken, held = recording.between(0.5, SHAKEN), recording.between(APPROACH)
     lag = np.linalg.norm(recording["follower"] - recording["ready"], axis=1)
     result: Metrics = {
-        "lag_rms": float(np.sqrt(np.mean(lag[shaken] ** 2))),
+        "lag_rms": rms(lag[shaken]),
         "lag_most": float(lag[shaken].max()),
         "clearance": float(clearance[recording.between(0.0, APPROACH - 2.0)].min()),
         "own_contact": _first(time, clearance <= 0),

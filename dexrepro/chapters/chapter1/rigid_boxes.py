@@ -16,6 +16,7 @@ import pandas as pd
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
 from dexrepro.chapters.chapter1.hold_and_move import FLIP, LEVEL, SIDES, TABLE
+from dexrepro.chapters.measures import rms
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.control.potential_field import PotentialField
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
@@ -196,7 +197,7 @@ def judge(recording: Recording, config: Config) -> dict[str, Any]:
         "inside": int(inside),
         "moved": moved,
         "slip": slip,
-        "rmse": float(np.sqrt(np.mean((force - config.law.desired_force) ** 2))),
+        "rmse": rms(force - config.law.desired_force),
         "bounces": int(np.sum(touching[:-1] & ~touching[1:])),
         "switches": int(np.sum(np.abs(np.diff(recording["phase"][time < RELEASED])))),
         "contact": float(time[np.argmax(recording["phase"] > 0)]),

@@ -10,7 +10,8 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter2 import balloon_pair
-from dexrepro.chapters.chapter2.measures import Array, force_error, rms, shown
+from dexrepro.chapters.chapter2.measures import Array, force_error, shown
+from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 
 FIGURES = {

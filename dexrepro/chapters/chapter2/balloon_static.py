@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter2 import balloon_pair
-from dexrepro.chapters.chapter2.measures import last_outside, mean, rms
+from dexrepro.chapters.chapter2.measures import last_outside, mean
+from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.rendering import Camera
 

@@ -9,7 +9,8 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter2 import planar_pair
-from dexrepro.chapters.chapter2.measures import force_error, mean, rms, shown
+from dexrepro.chapters.chapter2.measures import force_error, mean, shown
+from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 
 FIGURES = {

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter2 import planar_pair
-from dexrepro.chapters.chapter2.measures import force_error, mean, rms
+from dexrepro.chapters.chapter2.measures import force_error, mean
+from dexrepro.chapters.measures import rms
 from dexrepro.control.holding_reference import KnownMovement
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 

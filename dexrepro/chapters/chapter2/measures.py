@@ -12,11 +12,6 @@ from dexrepro.experiment import Recording
 Array = NDArray[np.float64]
 
 
-def rms(values: Array) -> float | None:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(values * values))) if values.size else None
-
-
 def mean(values: Array) -> float | None:
     """Mean."""
     return float(values.mean()) if values.size else None

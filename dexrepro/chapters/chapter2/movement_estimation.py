@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter2 import planar_pair
-from dexrepro.chapters.chapter2.measures import force_error, last_outside, mean, rms
+from dexrepro.chapters.chapter2.measures import force_error, last_outside, mean
+from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 
 FIGURES = {

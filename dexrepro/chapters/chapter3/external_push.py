@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import reach
-from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics, rms
+from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
 from dexrepro.chapters.chapter3.scene import (
     ARM,
     ELBOW,
@@ -22,6 +22,7 @@ from dexrepro.chapters.chapter3.scene import (
     cutaway,
     gripper_arm,
 )
+from dexrepro.chapters.measures import rms
 from dexrepro.control.momentum_observer import MomentumObserver
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.elements import Push

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3.scene import ARM, distance_to_centre, gripper_arm
+from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Metrics, Recording
 
 Array = NDArray[np.float64]
@@ -76,7 +75,3 @@ COLUMNS = {
 def last(values: Array) -> float:
     """Mean of the last 100 samples."""
     return float(values[-100:].mean())
-
-
-def rms(values: Any) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))

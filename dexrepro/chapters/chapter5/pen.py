@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from dexrepro.chapters.measures import rms
 from dexrepro.control.bounded_neural import barrier
 from dexrepro.control.gravity_pd import GravityPD
 from dexrepro.control.prescribed_performance import PerformanceBound
@@ -151,16 +152,12 @@ def quality(recording: Recording, config: Config) -> Metrics:
     return {
         "bound_use": float(usage.max()),
         "outside": float(np.mean(usage > 1)),
-        "error_rms": _rms(1e3 * np.linalg.norm(error[late], axis=1)),
-        "tip_rms": _rms(1e3 * tip[late]),
+        "error_rms": rms(1e3 * np.linalg.norm(error[late], axis=1)),
+        "tip_rms": rms(1e3 * tip[late]),
         "torque_max": float(np.abs(torque).max()),
-        "torque_step": _rms(np.diff(torque[late], axis=0)),
+        "torque_step": rms(np.diff(torque[late], axis=0)),
         **_lyapunov(recording, config),
     }
-
-
-def _rms(values: Any) -> float | None:
-    return float(np.sqrt(np.mean(values**2))) if values.size else None
 
 
 def _lyapunov(recording: Recording, config: Config) -> Metrics:

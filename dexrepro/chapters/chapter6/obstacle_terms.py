@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy.signal import savgol_filter
 
 from dexrepro.chapters.chapter6 import learning, plane
 from dexrepro.experiment import Config, Figure, Metrics, Recording
@@ -101,7 +102,7 @@ def _constrained(
     for sigma in config.reference_noise:
         noisy = samples + rng.normal(0, sigma, samples.shape) * np.r_[0, np.ones(len(samples) - 2), 0][:, None]
         at = np.linspace(movement.time[0], movement.time[-1], len(samples))
-        references.append(plane.differentiable(at, _smooth(noisy), movement.time))
+        references.append(plane.differentiable(at, savgol_filter(noisy, 11, 3, axis=0), movement.time))
         margins.append(config.cdmp.margin)
     batch = learning.stack(references)
     skill = learning.skill([lesson.second] * len(references), [movement] * len(references))
@@ -130,10 +131,6 @@ def _constrained(
         for i, sigma in enumerate([0.0, *config.reference_noise])
     ]
     return {"path": pd.DataFrame(path.position[:, 0], columns=["x", "y"]), "noise": pd.DataFrame(rows)}
-
-
-def _smooth(samples: NDArray[Any]) -> NDArray[Any]:
-    return learning.savgol_filter(samples, 11, 3, axis=0)
 
 
 def _straight(config: Config, runs: int) -> tuple[Skill, NDArray[Any], float]:

@@ -14,6 +14,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
 from dexrepro.chapters.chapter7 import skills
+from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Recording
 from dexrepro.humans.reaching import Obstacle
 from dexrepro.physics.elements import JointLoad, joint_friction
@@ -220,7 +221,7 @@ def tracking_metrics(recording: Recording, config: Config) -> dict[str, float | 
     torque = recording["arm.torque"]
     names = ("rms_error", "largest_error", "largest_torque", "torque_travel")
     values = (
-        float(np.sqrt(np.mean(error**2))),
+        rms(error),
         float(error.max()),
         float(np.abs(torque).max()),
         float(np.abs(np.diff(torque, axis=0)).sum(axis=0).mean()),

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter7 import skills
+from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 
 FIGURES = {
@@ -57,20 +58,15 @@ def paths(task: skills.NewTask, directions: list[float], height: float | None = 
     return np.moveaxis(found, 1, 0).reshape(found.shape[1], -1)
 
 
-def split(values: np.ndarray) -> np.ndarray:
-    """Paths (k, N, 3) from a channel (N, 3 k)."""
-    return np.moveaxis(values.reshape(len(values), -1, 3), 0, 1)
-
-
 def measure(recording: Recording, config: Config) -> Metrics:
     task = skills.Reach(config.task.start, config.task.goal)
     obstacle = skills.Obstacle(config.task.obstacle, config.task.height, config.scene.cube)
     heights = [config.scene.low, config.task.height, config.scene.tall]
-    sets = {h: split(recording[f"height{h:g}"]) for h in heights}
+    sets = {h: skills.by_path(recording[f"height{h:g}"]) for h in heights}
     lateral = {h: (sets[h] - recording["new"]) @ task.axes[1] for h in heights}
     lift = {h: sets[h][..., 2].max(axis=1) for h in heights}
     reached = {h: np.take_along_axis(v, np.abs(v).argmax(axis=1)[:, None], 1)[:, 0] for h, v in lateral.items()}
-    between = split(recording["between"])
+    between = skills.by_path(recording["between"])
     clearance = obstacle.clearance(between, config.scene.tool_radius)
     aside = ((between - recording["new"]) @ task.axes[1]).mean(axis=1)
     three = obstacle.clearance(sets[config.task.height], config.scene.tool_radius)
@@ -83,7 +79,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "clearance_between": float(clearance.min()),
         "worst_direction": float(config.between[int(clearance.argmin())]),
         **{
-            f"separation_{h:g}": float(np.sqrt(np.mean((lateral[h][1] - lateral[h][2]) ** 2))) for h in heights
+            f"separation_{h:g}": rms(lateral[h][1] - lateral[h][2]) for h in heights
         },
         "between_heights": min(betweenness(*(found[h] for h in heights)) for found in (lift, reached)),
         "lateral_steps": float(np.diff(-aside).min() / np.ptp(aside)),
@@ -119,16 +115,16 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     level = pictures.joined(figure, plans, sides, 1, 1)
     draw_ordinary(plans[0, 0], sides[0, 0], recordings, case, obstacle)
     for height in (case.scene.low, case.scene.tall):
-        for name, path in zip(pictures.DIRECTIONS, split(recording[f"height{height:g}"])):
+        for name, path in zip(pictures.DIRECTIONS, skills.by_path(recording[f"height{height:g}"])):
             line = pictures.DIRECTIONS[name] | {"alpha": 0.3, "linewidth": 0.7}
             pictures.plan(plans[0, 1], path, **line)
             pictures.side(sides[0, 1], path, task, **line)
-    for name, path in zip(pictures.DIRECTIONS, split(recording[f"height{case.task.height:g}"])):
+    for name, path in zip(pictures.DIRECTIONS, skills.by_path(recording[f"height{case.task.height:g}"])):
         pictures.plan(plans[0, 1], path, **pictures.DIRECTIONS[name])
         pictures.side(sides[0, 1], path, task, **pictures.DIRECTIONS[name])
     sides[0, 1].set_ylim(0, 13)
     pictures.name_directions(plans[0, 1])
-    pictures.plan(plans[1, 0], split(recording["between"]), color="#AAAAAA", linewidth=0.6)
+    pictures.plan(plans[1, 0], skills.by_path(recording["between"]), color="#AAAAAA", linewidth=0.6)
     pictures.plan(plans[1, 0], recording["chosen"], **style.LINES["book"])
     for panel in (plans[0, 1], plans[1, 0]):
         pictures.footprint(panel, obstacle)
@@ -168,7 +164,7 @@ def draw_ordinary(plan: Any, side: Any, recordings: Any, case: Config, obstacle:
 def draw_clearance(panel: Any, recording: Recording, case: Config, obstacle: Any) -> None:
     from dexrepro.report import style
 
-    clearance = obstacle.clearance(split(recording["between"]), case.scene.tool_radius)
+    clearance = obstacle.clearance(skills.by_path(recording["between"]), case.scene.tool_radius)
     panel.plot(case.between, clearance, marker=".", color="#888888")
     chosen = obstacle.clearance(recording["chosen"], case.scene.tool_radius)
     panel.plot([case.direction], [chosen], "o", color=style.BOOK)

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter7 import desk
+from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 from dexrepro.humans.reaching import Obstacle
 from dexrepro.physics.elements import Push
@@ -80,7 +81,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "contact_peak": float(force.max()),
         "contact_impulse": float(force.sum() * config.control_period),
         "contact_time": float(touching.sum() * config.control_period),
-        "rms_error": float(np.sqrt(np.mean(desk.tip_error(recording) ** 2))),
+        "rms_error": rms(desk.tip_error(recording)),
         "largest_torque": float(np.abs(recording["arm.torque"]).max()),
     }
 

@@ -152,11 +152,11 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     panels = [figure.add_subplot(grid[0, 2 * k : 2 * k + 2]) for k in range(len(groups))]
     panels.append(figure.add_subplot(grid[1, :3]))
     for letter, number, panel in zip("abcd", [*groups, groups[-1]], panels):
-        demonstrations = by_path(recording["demonstrations"])
+        demonstrations = skills.by_path(recording["demonstrations"])
         for k, path in enumerate(demonstrations):
             line = pictures.DIRECTIONS[names[k * 3 // len(demonstrations)]]
             pictures.plan(panel, path, color=line["color"], linewidth=0.4, alpha=0.5)
-        for name, path in zip(names, by_path(recording[f"groups{number}"])):
+        for name, path in zip(names, skills.by_path(recording[f"groups{number}"])):
             pictures.plan(panel, path, **pictures.DIRECTIONS[name])
         pictures.plan(panel, recording["ordinary"], **style.LINES["reference"])
         pictures.footprint(panel, condition.obstacle)
@@ -185,11 +185,6 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     style.panel(curve, "e", "error of ten draws of the nodes")
     style.title(figure, "Reactions approach the demonstrations group by group, if the old weights are kept")
     return {"7.8": figure}
-
-
-def by_path(values: np.ndarray) -> np.ndarray:
-    """Paths (k, N, 3) from a channel (N, 3 k)."""
-    return np.moveaxis(values.reshape(len(values), -1, 3), 0, 1)
 
 
 def tabulate(

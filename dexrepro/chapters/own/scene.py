@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from dexrepro.chapters.measures import rms
 from dexrepro.chapters.own.drivers import driver
 from dexrepro.chapters.own.paths import Path, leader_path
 from dexrepro.config import InputError
@@ -120,9 +121,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
     wanted = config.desired_force
     bounded = np.isfinite(limits).any()
     return {
-        "rmse": _rms(distance(recording, config)),
+        "rmse": rms(distance(recording, config)),
         "peak_distance": float(distance(recording, config).max()),
-        "force_rmse": None if wanted is None else _rms(force - wanted),
+        "force_rmse": None if wanted is None else rms(force - wanted),
         "force_peak": float(np.abs(force).max()),
         "saturated": float((torque >= 0.999 * limits).any(axis=1).mean()) if bounded else None,
         "simulated": float(recording.simulated),
@@ -134,10 +135,6 @@ def distance(recording: Recording, config: Config) -> Array:
     gap = recording["arm.tip"] - recording["leader.pose"] - np.array(config.offset, dtype=float)
     result: Array = np.linalg.norm(gap, axis=1)
     return result
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
