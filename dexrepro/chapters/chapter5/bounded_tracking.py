@@ -203,7 +203,7 @@ def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
 
 LAWS = (
     *("letter_w", "tuned", "no_network", "no_barrier", "no_network_no_barrier", "pd", "pd_stiff", "pd_tuned"),
-    *("printed", "printed_sign", "printed_gain", "printed_robust", "sign_only"),
+    *("printed", "printed_no_robust", "printed_sign", "printed_gain", "printed_robust", "sign_only", "sign_robust"),
 )
 SENSITIVITY = (
     *("letter_w", "light_model", "heavy_model", "rough_paper", "near_edge", "outside", "encoders", "encoders_slow"),

@@ -153,6 +153,7 @@ GENERALISATION = (
         "C7.17", "7.9", "For the medium obstacle forward and right overlap at a medium level.",
         ordered(*(f"{FUZZY}.main.separation_{h}" for h in (8, 4, 2))),
         printed=ordered(*(f"{FUZZY}.printed_sign.separation_{h}" for h in (8, 4, 2))), where="7.4.2",
+        by_construction=f"{PERSON}, and a weighted mean lies between what it averages",
     ),
     Claim(
         "C7.18", "7.9", "The reaction to the medium obstacle lies between those to the low and the tall one.",
@@ -189,6 +190,7 @@ GENERALISATION = (
         "C7.22", "7.9", "The generalised stiffness lies between those of the low and the tall obstacle.",
         greater(f"{FUZZY}.main.stiffness_between", 0.999),
         printed=greater(f"{FUZZY}.printed_sign.stiffness_between", 0.999), where="7.4.2",
+        by_construction="a weighted mean lies between what it averages",
     ),
     Claim(
         "C7.23", "7.C", "Leaving one condition out, fuzzy rules are closer than the nearest demonstration, on average.",
@@ -212,6 +214,8 @@ GENERALISATION = (
     Claim(
         "C7.25", "7.C", "The fuzzy system can represent the reactions of its own rules (to 1 mm, for some width).",
         less(f"{UNSEEN}.narrow.rule_worst", 0.1), where="Remark 7.3",
+        by_construction="with sets narrow enough one rule alone speaks at its centre",
+        note="At the rules' own conditions only; what it does between them, C7.24 and C7.24b tell.",
     ),
     Claim(
         "C7.25b", "7.C", "It does so with the widths used here.", less(f"{UNSEEN}.main.rule_worst", 0.1), source="ours",
