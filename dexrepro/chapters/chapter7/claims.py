@@ -244,7 +244,9 @@ CONTROL = (
             greater(f"{STABILITY}.gain10.stable", 0.5), less(f"{STABILITY}.gain45.stable", 0.5),
             within(f"{STABILITY}.limit_ratio", 0.85, 1.15),
         ),
-        where="7.3.3", note="Too large for the sampling period: the limit is where the sampled loop predicts it.",
+        printed=greater(f"{STABILITY}.displaced_printed.stable", 0.5),
+        where="7.3.3", note="Too large for the sampling period: the limit is where the sampled loop predicts it. As "
+        "printed the law is unstable with a suitable k_s as well (E7.18).",
     ),
     Claim(
         "C7.29", "7.B", "(7.40) ensures stability where k_s is too small.",
