@@ -165,7 +165,10 @@ def _tracking(recording: Recording, config: Config) -> Metrics:
 
 
 def _transfer(recording: Recording, config: Config) -> Metrics:
-    """Jump of the desired force by the gain alone, force rate and reference speed about the change of gain."""
+    """Jump of the desired force by the gain alone, force rate and reference speed about the change of gain.
+
+    oscillation: way of the indentation beyond one press and release [mm], over the whole contact, first touch included.
+    """
     contact, phase = _contact(recording), recording["phase"]
     indentation = recording["arm.tip"][:, 0] - config.object.surface
     state = np.column_stack([indentation, (recording["path"][:, 0] - config.object.surface) / config.cost.output])
