@@ -98,7 +98,8 @@ ERRATA = (
         "E1.13",
         "(1.35), (1.38)-(1.40)",
         "error",
-        "W~ = W - W^ contradicts the signs of (1.38) and (1.39); the dot on W~ in (1.39) and (1.40) is spurious.",
+        "W~ = W - W^ contradicts the signs of (1.38) and (1.39); the dot on W~ in (1.39) and (1.40) is spurious, "
+        "possibly by text extraction.",
         "W~ = W^ - W",
     ),
     Erratum(
