@@ -79,9 +79,10 @@ CLAIMS = (
         "The force error vanishes also while stiffness and velocity vary.",
         every(*(less(f"{TRACKING}.{case}_proposed.rmse_late", 0.1) for case in ("c2", "c3"))),
         where="1.4",
-        note="The bound of C1.05a. Constant weights that predict a smooth contact position exist (a difference quotient: "
-        "thousands a second), but the weights stay below 0.01 and act as an integral of the force error of gain "
-        "alpha N / L with N = Z.Z. What such a proportional-integral law leaves is the error seen (0.09 and 0.21 N).",
+        note="The bound of C1.05a. Constant weights that predict a smooth contact position exist (a difference "
+        "quotient: thousands a second), but the weights stay below 0.01 and act as an integral of the force error of "
+        "gain alpha N / L with N = Z.Z. What such a proportional-integral law leaves is the error seen (0.09 and 0.21 "
+        "N).",
     ),
     Claim(
         "C1.06a",
@@ -200,8 +201,8 @@ CLAIMS = (
         "Nobody scores lower with the proposed mapping (12 higher, 1 equal).",
         less("dartboard.book.losses", 0.5),
         where="1.5.2.1",
-        note="Two of the thirteen shown, 16 of the 130 of all panels. Eight of the nine whose tremor alone is faster than "
-        "v_min are among them: it raises the scale while they aim.",
+        note="Two of the thirteen shown, 16 of the 130 of all panels. Eight of the nine whose tremor alone is faster "
+        "than v_min are among them: it raises the scale while they aim.",
     ),
     Claim(
         "C1.17",
@@ -312,9 +313,9 @@ CLAIMS = (
         "The fast rise shows that the adaptation law converges fast.",
         greater("sensitivity.carrying.rise_gain", 0.1),
         where="1.5.2.2",
-        note="Share by which the weights shorten the rise to 95 % of the force, at a gain of 0.24: nothing. Nor do they "
-        "change the force error after the 8th second by more than a hundredth of a newton. The rise is the proportional "
-        "term's; only at gains below 0.05 do the weights shorten it, by a tenth.",
+        note="Share by which the weights shorten the rise to 95 % of the force, at a gain of 0.24: nothing. Nor do "
+        "they change the force error after the 8th second by more than a hundredth of a newton. The rise is the "
+        "proportional term's; only at gains below 0.05 do the weights shorten it, by a tenth.",
     ),
     Claim(
         "C1.26",

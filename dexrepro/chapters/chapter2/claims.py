@@ -183,8 +183,8 @@ TABLE = (
             *(less(f"{COMPARISON}.s{n}.rmse", 0.7) for n in (16, 18)),
         ),
         where="2.4.1.3",
-        note="The book says it of all twelve. Without (2.8) four more stay within 10 %; s15 and s17 err by 28 %, because "
-        "an object of 0.55 m, a length of ours, cannot give 7 N there.",
+        note="The book says it of all twelve. Without (2.8) four more stay within 10 %; s15 and s17 err by 28 %, "
+        "because an object of 0.55 m, a length of ours, cannot give 7 N there.",
     ),
     Claim(
         "C2.19",

@@ -55,8 +55,8 @@ REACHING = (
         less(f"{FIXED}.exactpos1.rcm_distance_final", f"{FIXED}.exactposfree1.rcm_distance_final", 0.5),
         printed=less(f"{FIXED}.bracket1.rcm_distance_final", f"{FIXED}.exactposfree1.rcm_distance_final", 0.5),
         source="ours",
-        note="With the bracket of (3.31) as printed it does, too. What decides is how its arrows are read: from the first "
-        "letter to the second the force drives the arm away (E3.16b).",
+        note="With the bracket of (3.31) as printed it does, too. What decides is how its arrows are read: from the "
+        "first letter to the second the force drives the arm away (E3.16b).",
     ),
     Claim(
         "C3.04",
@@ -72,9 +72,9 @@ REACHING = (
         "grows by less than a tenth (reach 1, exact model).",
         less(f"{FIXED}.exactpos1.tracking_error_max", f"{FIXED}.exactposfree1.tracking_error_max", 1.1),
         where="3.3.2",
-        note="The null-space torque is dynamically consistent, (3.27) is not: e_2 holds the speed of all joints, so the law "
-        "brakes the null-space motion with a torque that the task feels (C3.04c). No torque is clipped here, and "
-        "without the network the coupling is larger.",
+        note="The null-space torque is dynamically consistent, (3.27) is not: e_2 holds the speed of all joints, so "
+        "the law brakes the null-space motion with a torque that the task feels (C3.04c). No torque is clipped here, "
+        "and without the network the coupling is larger.",
     ),
     Claim(
         "C3.04c",
@@ -176,8 +176,8 @@ PUSHING = (
         less(f"{PUSH}.plus.observer_error", 0.1),
         source="ours",
         where="3.5.3",
-        note="A harder test than the book's, which takes the model for exact (C3.07b): the observer takes the weight that it "
-        "does not know for a push.",
+        note="A harder test than the book's, which takes the model for exact (C3.07b): the observer takes the weight "
+        "that it does not know for a push.",
     ),
     Claim(
         "C3.07b",
@@ -214,8 +214,8 @@ PUSHING = (
         "After a large push the arm returns to the remote centre within 2 s, pushed along +y or -y.",
         every(less(f"{PUSH}.plus.rcm_recovery_time", 2.0), less(f"{PUSH}.minus.rcm_recovery_time", 2.0)),
         where="3.5.3",
-        note="After 0.47 s; without the null-space torque, to which the book ascribes it, after 0.48 s: the main task's "
-        "orientation rule brings the arm back.",
+        note="After 0.47 s; without the null-space torque, to which the book ascribes it, after 0.48 s: the main "
+        "task's orientation rule brings the arm back.",
     ),
     Claim(
         "C3.10",
@@ -247,7 +247,8 @@ PUSHING = (
             less(f"{PUSH}.minus.error_peak", f"{PUSH}.plain_minus.error_peak"),
         ),
         where="3.5.3",
-        note="By 2 % and 7 % of 15 mm, in single runs. Without any null-space torque the peak is that without compensation.",
+        note="By 2 % and 7 % of 15 mm, in single runs. Without any null-space torque the peak is that without "
+        "compensation.",
     ),
 )
 
@@ -355,8 +356,8 @@ GRASPING = (
         "of them than with random grasps.",
         every(greater(f"{PICKS}.chosen.success", 0.5), greater(f"{PICKS}.success_gain", 0.0)),
         where="3.5, 3.6",
-        note="13 of 20 against 2 of 20; the 95 % interval of the former, 41 to 85 %, does not exclude half. The number of "
-        "proposals was raised to 200 because 40 left scenes without a good one. The book shows single grasps and no "
+        note="13 of 20 against 2 of 20; the 95 % interval of the former, 41 to 85 %, does not exclude half. The number "
+        "of proposals was raised to 200 because 40 left scenes without a good one. The book shows single grasps and no "
         "rate of success. Closing is modelled as a rigid hold.",
     ),
 )

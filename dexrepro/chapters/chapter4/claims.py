@@ -6,8 +6,8 @@ from dexrepro.experiment import Claim, Reference, every, greater, less, ordered
 
 S, B, P, G = "skill_reuse", "barrier_and_switch", "payload_transfer", "growth_cost"
 EQUAL_GAIN = (
-    "Equal effective gain: adaptation gain times mean |G|^2 on the settled orbit is about 1000, but 275 for the width of 2, "
-    "whose oscillation leaves its nodes (with 800 it errs and oscillates as much)."
+    "Equal effective gain: adaptation gain times mean |G|^2 on the settled orbit is about 1000, but 275 for the width "
+    "of 2, whose oscillation leaves its nodes (with 800 it errs and oscillates as much)."
 )
 BROAD = ("broad20", "broad30", "broad50")
 COMMON = ("broad20", "common30", "common50")  # one gain and one width for all thresholds
@@ -38,8 +38,9 @@ CLAIMS = (
         "The broad network tracks better than a fuzzy network with the same parameters.",
         less(f"{S}.broad20.rmse_mm", f"{S}.common_fuzzy.rmse_mm"),
         where="4.5",
-        note="With the same adaptation gain, whose effect is far smaller on features that sum to one: an effective gain of 4 "
-        "against 1000. C4.01 is judged at equal effective gain; by that rule the fuzzy network wins (C4.02b).",
+        note="With the same adaptation gain, whose effect is far smaller on features that sum to one: an effective "
+        "gain of 4 against 1000. C4.01 is judged at equal effective gain; by that rule the fuzzy network wins "
+        "(C4.02b).",
     ),
     Claim(
         "C4.02b",
