@@ -80,7 +80,7 @@ CLAIMS = (
         every(*(less(f"{TRACKING}.{case}_proposed.rmse_late", 0.1) for case in ("c2", "c3"))),
         where="1.4",
         note="The bound of C1.05a. Constant weights that predict a smooth contact position exist (a difference "
-        "quotient: thousands a second), but the weights stay below 0.01 and act as an integral of the force error of "
+        "quotient: thousands a second), but the weights stay below 0.1 and act as an integral of the force error of "
         "gain alpha N / L with N = Z.Z. What such a proportional-integral law leaves is the error seen (0.09 and 0.21 "
         "N).",
     ),
