@@ -385,6 +385,7 @@ CLAIMS = (
         "The win survives tuning: both laws with the best of twelve gains.",
         less(f"{HOLDING}.t1_proposed_tuned.rmse", f"{HOLDING}.t1_passive_tuned.rmse"),
         source="ours",
+        note="Gains tuned on the holding line without arms (T1.H), compared on the first trajectory of the arms.",
     ),
     Claim(
         "C1.34",
