@@ -1,7 +1,7 @@
 """Three holding laws on two planar arms with an object whose stiffness varies, Section 1.5.1.
 
 The leader's motion is unknown to the follower; both arms are torque-controlled in the World, the object is a massless
-spring that never pulls. Cases c1, c2, c3 are the three columns of Fig. 1.10.
+spring that never pulls, and its force is felt without noise. Cases c1, c2, c3 are the three columns of Fig. 1.10.
 """
 
 from __future__ import annotations

@@ -188,6 +188,7 @@ PUSHING = (
             within(f"{PUSH}.exact_plus.observer_lag", 0.8 * 0.02, 1.2 * 0.02),
         ),
         where="3.2.4",
+        note="Joint angles, speeds and torques are measured without noise; with noise see C3.08.",
     ),
     Claim(
         "C3.07c",
