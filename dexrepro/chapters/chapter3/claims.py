@@ -185,7 +185,7 @@ PUSHING = (
         "With an exact model the observer is that accurate, and its lag is the predicted 1/K_Ex (within 20 %).",
         every(
             less(f"{PUSH}.exact_plus.observer_error", 0.1),
-            within(f"{PUSH}.exact_plus.observer_lag", 0.8 * 0.02, 1.2 * 0.02),
+            within(f"{PUSH}.exact_plus.observer_lag_ratio", 0.8, 1.2),
         ),
         where="3.2.4",
         note="Joint angles, speeds and torques are measured without noise; with noise see C3.08.",
@@ -227,7 +227,8 @@ PUSHING = (
             less(f"{PUSH}.minus.rcm_peak", f"{PUSH}.plain_minus.rcm_peak"),
         ),
         where="3.5.3",
-        note="By 4 % and 12 % of 7 mm, in single runs.",
+        note="By 4 % and 12 % of 7 mm, in single runs; where what is not printed varies it is a matter of luck "
+        "(study).",
     ),
     Claim(
         "C3.10b",
@@ -260,6 +261,7 @@ TRACKING = (
         "The arm follows the moving opening (Dis_R below 10 mm) and touches neither lid nor box.",
         every(less(f"{MOVING}.track.moving_distance_max", 0.01), less(f"{MOVING}.track.contact_time", 1e-3)),
         where="3.5.4",
+        note="It rests on the gripper's length as C3.02 does: with most shorter ones it fails (study).",
     ),
     Claim(
         "C3.12b",
