@@ -182,8 +182,8 @@ CLAIMS = (
         "The same with the reference that integrates the force error, by at least a tenth.",
         less(f"{OBJECT}.soft.oscillation", f"{OBJECT}.abrupt.oscillation", 0.9),
         source="ours",
-        note="With our integrating reference neither oscillates at the change: the 0.3 mm that both have come from the "
-        "first touch and the end of the exploration. What improves is rate and continuity (C8.09).",
+        note="With our integrating reference neither oscillates from the change on. What improves is rate and "
+        "continuity (C8.09).",
     ),
     Claim(
         "C8.11",
@@ -195,8 +195,8 @@ CLAIMS = (
             less(f"{OBJECT}.soft.force_rate", f"{OBJECT}.lqr.force_rate"),
         ),
         where="8.4.3",
-        note="The force rate decides: the regulator's gain is constant, nothing happens to it at the change. "
-        "Oscillation alone would hold, but says nothing about the change: 0.3 and 0.4 mm, from the first touch.",
+        note="The regulator's gain is constant: nothing happens to it at the change, after which neither law "
+        "oscillates.",
     ),
     Claim(
         "C8.12",
