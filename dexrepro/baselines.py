@@ -176,6 +176,13 @@ def update_chapter(
 def _entry(value: float | None, disturbed: Sequence[float | None], stored: Mapping[str, Any] | None) -> dict[str, Any]:
     if stored and stored.get("reason"):
         return {**stored, "value": value}
+    entry = _fresh_entry(value, disturbed)
+    if stored and agrees(value, stored):  # a sensitivity once seen remains
+        entry |= {kind: max(entry[kind], stored[kind]) for kind in ("rtol", "atol")}
+    return entry
+
+
+def _fresh_entry(value: float | None, disturbed: Sequence[float | None]) -> dict[str, Any]:
     known = [other for other in disturbed if other is not None]
     if value is None or not known:
         return {"value": value, "rtol": 0.0, "atol": 0.0}
