@@ -166,8 +166,9 @@ def _sentences(outcome: Any) -> list[str]:
 
 def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     from dexrepro.config import compose_chapter
+    from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
-    from dexrepro.runner import Outcome, plan_chapter, run_plans
+    from dexrepro.runner import Outcome, run_plans
 
     numbers, rest = chapters_of(overrides, extra_dir)
     plans: list[Any] = []
@@ -316,7 +317,7 @@ def _print_summary(outcome: Any) -> None:
 def _selected(options: argparse.Namespace, extra: Sequence[str] = ()) -> tuple[list[str], Path, list[str]]:
     """Chapters, results folder and experiments from ``chapter=N results=DIR only=NAME figure=ID``."""
     from dexrepro.config import InputError
-    from dexrepro.runner import select
+    from dexrepro.plan import select
 
     overrides = [quoted(text) for text in options.selection]
     for text in overrides:
