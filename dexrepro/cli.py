@@ -235,7 +235,7 @@ def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[s
     values = dict(text.partition("=")[::2] for text in overrides)
     figure = values.get("figure", "null").strip("'\"")
     if figure != "null":
-        number = figure.lstrip("T").partition(".")[0]
+        number = figure.lstrip("[T'").partition(".")[0]
         if number not in chapters.numbers():
             raise InputError(f"unknown figure '{figure}': no chapter {number}")
         return [number]
