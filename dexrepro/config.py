@@ -137,6 +137,10 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
     Raises InputError with one sentence where an override names no key, cannot be parsed or is out of range.
     """
     shipped = _shipped(str(config_dir()), chapter, _changed(chapter))
+    if not extra_dir and (own := [text for text in overrides if re.match(r"\+(scene|own)=\w", text)]):
+        raise InputError(
+            f"'{own[0]}' needs --config-dir FOLDER, the folder that holds {own[0][1:].replace('=', '/')}.yaml"
+        )
     search = [f"hydra.searchpath=['file://{Path(extra_dir).resolve()}']"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
     try:
@@ -165,7 +169,13 @@ def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
         for option in options.strip("[]").split(","):
             path = Path(folder, group, option.strip("'\" ")).with_suffix(".yaml")
             if path.is_file():
-                keys += yaml.safe_load(path.read_text()) or {}
+                try:
+                    content = yaml.safe_load(path.read_text()) or {}
+                except (UnicodeDecodeError, yaml.YAMLError) as error:
+                    raise InputError(f"{path} is no YAML file: {' '.join(str(error).split())}") from error
+                if not isinstance(content, dict):
+                    raise InputError(f"{path} holds no keys: it must consist of lines such as 'only: EXPERIMENT'")
+                keys += content
     return keys
 
 
@@ -220,6 +230,9 @@ def check_settings(composed: Mapping[str, Any]) -> None:
         raise InputError(f"results = {results!r} is not allowed: it must be the name of a folder")
     if isinstance(figure, list):
         raise InputError(f"figure = {figure} is not allowed: it must be one figure or table, such as 2.7 or T2.1")
+    scene = composed.get("scene")
+    if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]*", name := str(scene.get("name"))):
+        raise InputError(f"scene.name = {name} is not allowed: it names a folder; use letters, digits, '_' and '-'")
     for key in ("force", "quiet", "gui"):
         if not isinstance(composed[key], bool):
             raise InputError(f"{key} = {composed[key]} is not allowed: it must be true or false")
@@ -234,8 +247,11 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
     names = _names(composed)
     result: dict[str, dict[str, Any]] = {}
     given = block.get("cases", {})
-    if not isinstance(given, Mapping) or not all(isinstance(case, Mapping | None) for case in given.values()):
-        raise InputError(f"{experiment}.cases = {given} is not allowed: it must be names with what each changes")
+    wrong = given if isinstance(given, Mapping) else {"": given}
+    for name, case in wrong.items():
+        if not name or not isinstance(case, Mapping | None):
+            where = f"{experiment}.cases.{name}".rstrip(".")
+            raise InputError(f"{where} = {case} is not allowed: cases are names with what each changes")
     for name, overrides in _expanded(given or {"default": {}}, names, experiment, base):
         merged = copy.deepcopy(base)
         for key, value in overrides.items():

@@ -35,7 +35,9 @@ def result(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("force=perhaps", "force = perhaps is not allowed: it must be true or false"),
         ("figure=[90.1,90.2]", "it must be one figure or table"),
         ("+decai.rate=2", "unknown key 'decai': did you mean 'decay'?"),
-        ("decay.cases=5", "decay.cases = 5 is not allowed: it must be names with what each changes"),
+        ("decay.cases=5", "decay.cases = 5 is not allowed: cases are names with what each changes"),
+        ("+decay.cases.mine=5", "decay.cases.mine = 5 is not allowed"),
+        ("+scene=squeeze", "needs --config-dir FOLDER, the folder that holds scene/squeeze.yaml"),
         ("decay.gains=[]", "a list that a case is made of is empty"),
         ("decay.duration=null", "decay.duration = null is not allowed: it must be a number"),
         ("decay.start=false", "decay.start = False is not allowed: it must be a number"),
@@ -54,6 +56,24 @@ def test_a_wrong_value_names_its_key_and_what_is_allowed(toy: Path, override: st
 def test_null_still_turns_a_number_off_that_is_no_quantity(toy: Path) -> None:
     plans, _ = plan_chapter("90", ["only=decay", "decay.gain=null"])
     assert plans[0].jobs[0].config["gain"] is None
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (b"only: [a\n b: c: d\n", "bad.yaml is no YAML file: while parsing a flow sequence"),
+        (b"\tonly: decay\n", "bad.yaml is no YAML file"),
+        (b"only: caf\xe9\n", "bad.yaml is no YAML file: 'utf-8' codec"),
+        (b"- a\n", "bad.yaml holds no keys"),
+    ],
+)
+def test_a_file_of_the_user_that_is_no_yaml_is_named(toy: Path, content: bytes, sentence: str) -> None:
+    (toy / "mine/own").mkdir(parents=True)
+    (toy / "mine/own/bad.yaml").write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        cli.run_command(["--config-dir", "mine", "+own=bad"])
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
 
 
 def cut_short(name: str) -> Callable[[Path], object]:
