@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
+import os
 import re
 import signal
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +40,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         from dexrepro.config import InputError
 
+        if isinstance(error, BrokenPipeError):  # who reads the output has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return FAILED
+        if isinstance(error, OSError):  # a full or write-protected disk, an unreadable file
+            error = InputError(f"{error.filename or 'cannot read or write a file'}: {error.strerror or error}")
         if not isinstance(error, InputError):
             raise
         err.print(f"dexrepro: {error}", markup=False)
@@ -189,7 +196,7 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
 
 def positive_workers(value: Any) -> int | None:
     """The number of processes, None for one a core."""
-    if value is None or (isinstance(value, int) and value > 0):
+    if value is None or (isinstance(value, int) and not isinstance(value, bool) and value > 0):
         return value
     from dexrepro.config import InputError
 
@@ -228,7 +235,7 @@ def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[s
     values = dict(text.partition("=")[::2] for text in overrides)
     figure = values.get("figure", "null").strip("'\"")
     if figure != "null":
-        number = figure.lstrip("T").partition(".")[0]
+        number = figure.lstrip("[T'").partition(".")[0]
         if number not in chapters.numbers():
             raise InputError(f"unknown figure '{figure}': no chapter {number}")
         return [number]
@@ -308,18 +315,35 @@ def _print_summary(outcome: Any) -> None:
 
 
 def _selected(options: argparse.Namespace, extra: Sequence[str] = ()) -> tuple[list[str], Path, list[str]]:
-    """Chapters, results folder and experiments from ``chapter=N results=DIR only=NAME``."""
+    """Chapters, results folder and experiments from ``chapter=N results=DIR only=NAME figure=ID``."""
     from dexrepro.config import InputError
+    from dexrepro.plan import select
 
     overrides = [quoted(text) for text in options.selection]
     for text in overrides:
         if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers", *extra):
-            raise InputError(f"'{text}' has no meaning here; use chapter=N, only=EXPERIMENT, figure=ID or results=DIR")
+            more = "".join(f", {key}=" for key in extra)
+            raise InputError(
+                f"'{text}' has no meaning here; there are: chapter=N, only=EXPERIMENT, figure=ID, results=DIR{more}"
+            )
     numbers, rest = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
     values = dict(text.partition("=")[::2] for text in rest)
     only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]
-    options.workers = positive_workers(int(values["workers"]) if values.get("workers", "").isdigit() else None)
+    workers = values.get("workers")
+    options.workers = positive_workers(int(workers) if workers and workers.isdigit() else workers)
+    if only or "figure" in values:
+        figure = values.get("figure", "").strip("'\"") or None
+        only = [experiment.name for number in numbers for experiment in select(number, only or None, figure)]
     return numbers, Path(values.get("results", "results").strip("'\"")), only
+
+
+def _existing(results: Path) -> Path:
+    """A results folder from which something is to be read."""
+    from dexrepro.config import InputError
+
+    if str(results) != "results" and not results.is_dir():
+        raise InputError(f"results = {results} is not allowed: there is no such folder")
+    return results
 
 
 def list_command(options: argparse.Namespace) -> int:
@@ -343,8 +367,11 @@ def list_command(options: argparse.Namespace) -> int:
 def check_command(options: argparse.Namespace) -> int:
     """Exit status 0: same; 1: drift; 2: results missing."""
     from dexrepro import baselines
+    from dexrepro.config import InputError
 
-    numbers, results, _ = _selected(options)
+    numbers, results, only = _selected(options)
+    if options.update and only:
+        raise InputError("--update renews whole chapters; leave out only= and figure=")
     if options.update:
         for number in numbers:
             for line in baselines.update_chapter(number, results, accept=options.accept, workers=options.workers):
@@ -352,7 +379,7 @@ def check_command(options: argparse.Namespace) -> int:
             out.print(f"wrote {baselines.baseline_dir() / f'chapter{number}.json'}", markup=False)
         return OK
     try:
-        reports = [baselines.check_chapter(number, results) for number in numbers]
+        reports = [baselines.check_chapter(number, _existing(results), only) for number in numbers]
     except baselines.ResultsMissing as missing:
         err.print(str(missing), markup=False)
         return WRONG
@@ -385,9 +412,16 @@ def _print_check(report: dict[str, Any]) -> None:
 
 def draw_command(options: argparse.Namespace) -> int:
     """Draw figures and tables again from what is on disk."""
+    from dexrepro.config import InputError
+    from dexrepro.report.damage import check_result
     from dexrepro.runner import redraw
 
     numbers, results, only = _selected(options)
+    folders = [path.parent for number in numbers for path in _existing(results).glob(f"chapter{number}/*/run.json")]
+    if not (chosen := [folder for folder in folders if not only or folder.name in only]):
+        raise InputError(f"there is no such result in {results}; run first: dexrepro run {' '.join(options.selection)}")
+    for folder in chosen:
+        check_result(folder, "metrics.json", "config.yaml", series=True)
     for folder in redraw(numbers, results, only):
         out.print(str(folder), markup=False)
     return OK
@@ -398,7 +432,7 @@ def report_command(options: argparse.Namespace) -> int:
     from dexrepro.report import page
 
     _, results, _ = _selected(options)
-    out.print(str(page.build(results)), markup=False)
+    out.print(str(page.build(_existing(results))), markup=False)
     return OK
 
 
@@ -428,6 +462,8 @@ def render_command(options: argparse.Namespace) -> int:
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
         raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
+    if "case" in values and not folders and not only:
+        raise InputError(f"case = {values['case']}: of which experiment? add only=EXPERIMENT or a result folder")
     films = []
     for number in () if folders else numbers:
         for experiment in chapters.load(number).experiments:
@@ -451,16 +487,12 @@ def study_command(options: argparse.Namespace) -> int:
     from concurrent.futures.process import BrokenProcessPool
 
     from dexrepro import study
-    from dexrepro.config import InputError
 
     if any(text.startswith(("jobs=", "hydra")) for text in options.selection):
         return _study_jobs(options)
     numbers, results, only = _selected(options, ("claim", "samples", "hours"))
     values = dict(text.partition("=")[::2] for text in options.selection)
-    try:
-        samples, hours = int(values.get("samples", 200)), float(values.get("hours", 0)) or None
-    except ValueError as error:
-        raise InputError("samples must be a whole number and hours a number") from error
+    samples, hours = _samples(values.get("samples", "200")), _hours(values.get("hours"))
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
             try:
@@ -470,6 +502,23 @@ def study_command(options: argparse.Namespace) -> int:
                 return FAILED
             _print_study(name, path, results)
     return OK
+
+
+def _samples(text: str) -> int:
+    from dexrepro.config import InputError
+
+    if not text.isdecimal() or int(text) < 1:
+        raise InputError(f"samples = {text} is not allowed: it must be a whole number of 1 or greater")
+    return int(text)
+
+
+def _hours(text: str | None) -> float | None:
+    from dexrepro.config import InputError
+
+    with suppress(ValueError):
+        if text is None or (math.isfinite(float(text)) and float(text) > 0):
+            return float(text) if text else None
+    raise InputError(f"hours = {text} is not allowed: it must be a number greater than 0")
 
 
 def _study_jobs(options: argparse.Namespace) -> int:
@@ -484,6 +533,7 @@ def _study_jobs(options: argparse.Namespace) -> int:
     launcher = [f"{key}={value}" for key, value in values.items() if key.startswith("hydra")]
     options.selection = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
     numbers, folder, only = _selected(options, ("claim", "samples", "hours"))
+    _samples(values.get("samples", "200")), _hours(values.get("hours"))
     names = [name for number in numbers for name in study.experiments_of(number, only, values.get("claim"))]
     selection = ",".join(json.dumps(text) for text in options.selection)
     results = [text for text in options.selection if text.startswith("results=")]
