@@ -14,7 +14,8 @@ from typing import Any
 
 from dexrepro import chapters
 from dexrepro.config import InputError
-from dexrepro.plan import plan_chapter
+from dexrepro.plan import plan_chapter, select
+from dexrepro.report.damage import check_result
 from dexrepro.runner import run_plans
 from dexrepro.storage import read_json, write_json
 
@@ -40,10 +41,11 @@ def read(chapter: str) -> dict[str, Any]:
     return read_json(path) if path.exists() else {"chapter": chapter, "metrics": {}, "claims": {}}
 
 
-def check_chapter(chapter: str, results: Path) -> dict[str, Any]:
-    """Compare the results of a chapter with its baseline.
+def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> dict[str, Any]:
+    """Compare the results of a chapter, or of some of its experiments, with its baseline.
 
-    Returns the shape documented for ``dexrepro check --json``. Raises ResultsMissing where an experiment was not run.
+    Returns the shape documented for ``dexrepro check --json``. Raises ResultsMissing where an experiment was not run,
+    InputError where a result is damaged.
     """
     baseline = read(chapter)
     _, skipped = plan_chapter(chapter, [f"results='{results}'"])
@@ -57,18 +59,18 @@ def check_chapter(chapter: str, results: Path) -> dict[str, Any]:
         "claims": [],
         "verdict_changed": [],
     }
-    for experiment in chapters.load(chapter).experiments:
+    for experiment in select(chapter, list(only) or None, None):
         stored = baseline["metrics"].get(experiment.name, {})
         if experiment.name in skipped:
             report["skipped"] += list(stored)
             continue
         folder = results / f"chapter{chapter}" / experiment.name
-        try:
-            metrics, claims = read_json(folder / "metrics.json"), read_json(folder / "claims.json")
-        except OSError as error:
+        if not (folder / "run.json").exists():
             raise ResultsMissing(
                 f"no results of {experiment.name}; run: dexrepro run chapter={chapter} only={experiment.name}"
-            ) from error
+            )
+        check_result(folder, "metrics.json", "claims.json")
+        metrics, claims = read_json(folder / "metrics.json"), read_json(folder / "claims.json")
         _compare(report, experiment.name, metrics, stored)
         for claim in claims:
             expected = baseline["claims"].get(claim["id"])
@@ -173,6 +175,13 @@ def update_chapter(chapter: str, results: Path, *, accept: Sequence[str], worker
 def _entry(value: float | None, disturbed: Sequence[float | None], stored: Mapping[str, Any] | None) -> dict[str, Any]:
     if stored and stored.get("reason"):
         return {**stored, "value": value}
+    entry = _fresh_entry(value, disturbed)
+    if stored and agrees(value, stored):  # a sensitivity once seen remains
+        entry |= {kind: max(entry[kind], stored[kind]) for kind in ("rtol", "atol")}
+    return entry
+
+
+def _fresh_entry(value: float | None, disturbed: Sequence[float | None]) -> dict[str, Any]:
     known = [other for other in disturbed if other is not None]
     if value is None or not known:
         return {"value": value, "rtol": 0.0, "atol": 0.0}

@@ -137,6 +137,10 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
     Raises InputError with one sentence where an override names no key, cannot be parsed or is out of range.
     """
     shipped = _shipped(str(config_dir()), chapter, _changed(chapter))
+    if not extra_dir and (own := [text for text in overrides if re.match(r"\+(scene|own)=\w", text)]):
+        raise InputError(
+            f"'{own[0]}' needs --config-dir FOLDER, the folder that holds {own[0][1:].replace('=', '/')}.yaml"
+        )
     search = [f"hydra.searchpath=['file://{Path(extra_dir).resolve()}']"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
     try:
@@ -145,12 +149,15 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
             return copy.deepcopy(shipped)
         composed = _compose([f"chapter='{chapter}'", *overrides, *search])
     except (HydraException, OmegaConfBaseException) as error:
-        raise InputError(" ".join(str(error).split())) from error
-    if extra_dir and (unknown := [key for key in composed if key not in shipped]):
+        raise InputError(" ".join(str(error.__cause__ or error).split())) from error
+    if unknown := [key for key in composed if key not in shipped]:
+        if not extra_dir:
+            raise InputError(f"unknown key '{unknown[0]}': {nearest(unknown[0], shipped)}")
         raise InputError(
             f"a file in {extra_dir} sets '{unknown[0]}', which chapter {chapter} does not have: begin it with "
             "'# @package _global_' and name an experiment of the chapter"
         )
+    check_settings(composed)
     return composed
 
 
@@ -162,7 +169,13 @@ def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
         for option in options.strip("[]").split(","):
             path = Path(folder, group, option.strip("'\" ")).with_suffix(".yaml")
             if path.is_file():
-                keys += yaml.safe_load(path.read_text()) or {}
+                try:
+                    content = yaml.safe_load(path.read_text()) or {}
+                except (UnicodeDecodeError, yaml.YAMLError) as error:
+                    raise InputError(f"{path} is no YAML file: {' '.join(str(error).split())}") from error
+                if not isinstance(content, dict):
+                    raise InputError(f"{path} holds no keys: it must consist of lines such as 'only: EXPERIMENT'")
+                keys += content
     return keys
 
 
@@ -191,7 +204,9 @@ def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> Non
         try:
             override = OverridesParser.create().parse_override(text)
         except HydraException as error:
-            raise InputError(f"'{text}' is not an override of the form key=value") from error
+            raise InputError(
+                f"'{text}' is not an override of the form key=value, such as chapter=2, only=EXPERIMENT or figure=2.7"
+            ) from error
         key = override.key_or_group
         if override.is_add() or override.is_force_add() or "/" in key or key.startswith("hydra"):
             continue
@@ -206,6 +221,23 @@ def _keys(node: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
             yield from _keys(value, f"{prefix}{key}.")
 
 
+def check_settings(composed: Mapping[str, Any]) -> None:
+    """Refuse settings that are no experiment's and of which nothing can be made."""
+    seed, results, figure = composed["seed"], composed["results"], composed["figure"]
+    if not _whole(seed) or seed < 0:
+        raise InputError(f"seed = {seed} is not allowed: it must be a whole number of 0 or greater")
+    if not isinstance(results, str) or not results:
+        raise InputError(f"results = {results!r} is not allowed: it must be the name of a folder")
+    if isinstance(figure, list):
+        raise InputError(f"figure = {figure} is not allowed: it must be one figure or table, such as 2.7 or T2.1")
+    scene = composed.get("scene")
+    if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]*", name := str(scene.get("name"))):
+        raise InputError(f"scene.name = {name} is not allowed: it names a folder; use letters, digits, '_' and '-'")
+    for key in ("force", "quiet", "gui"):
+        if not isinstance(composed[key], bool):
+            raise InputError(f"{key} = {composed[key]} is not allowed: it must be true or false")
+
+
 def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, dict[str, Any]]:
     """Resolved configuration of every case of an experiment, checked: ``{case: plain dictionary}``."""
     block = composed.get(experiment)
@@ -214,12 +246,22 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
     base = {key: value for key, value in block.items() if key != "cases"}
     names = _names(composed)
     result: dict[str, dict[str, Any]] = {}
-    for name, overrides in _expanded(block.get("cases") or {"default": {}}, names, experiment, base):
+    given = block.get("cases", {})
+    wrong = given if isinstance(given, Mapping) else {"": given}
+    for name, case in wrong.items():
+        if not name or not isinstance(case, Mapping | None):
+            where = f"{experiment}.cases.{name}".rstrip(".")
+            raise InputError(f"{where} = {case} is not allowed: cases are names with what each changes")
+    for name, overrides in _expanded(given or {"default": {}}, names, experiment, base):
         merged = copy.deepcopy(base)
         for key, value in overrides.items():
             _assign(merged, key, copy.deepcopy(value), f"{experiment}.cases.{name}")
         result[name] = _resolve(names, experiment, merged)
         check_values(result[name], experiment)
+    if not result:
+        raise InputError(
+            f"{experiment}.cases = {', '.join(given)} makes no case: a list that a case is made of is empty"
+        )
     return result
 
 
@@ -349,11 +391,28 @@ def check_values(config: Mapping[str, Any], where: str) -> None:
 
 
 def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
-    """Refuse a text where the shipped configuration has a number."""
-    expected = dict(leaves(shipped))
-    for key, value in leaves(config):
-        if _number(expected.get(key)) and isinstance(value, str):
-            raise InputError(f"{where}.{key} = '{value}' is not allowed: it must be a number")
+    """Refuse what is no number where the shipped configuration has a number, or numbers in lists.
+
+    null stays possible, for it turns many a thing off, but not for what is a quantity by its name.
+    """
+    for key, book in shipped.items():
+        if key not in config:
+            continue
+        value = config[key]
+        if isinstance(book, Mapping) and isinstance(value, Mapping):
+            check_types(value, book, f"{where}.{key}")
+        numbers = [_number(item) for _, item in leaves(book)]
+        if not isinstance(book, Mapping) and numbers and all(numbers):
+            for place, item in leaves(value):
+                quantity = _POSITIVE.search(key) or _NOT_NEGATIVE.search(key)
+                if not _number(item) and (item is not None or quantity):
+                    dotted = f"{where}.{key}.{place}".rstrip(".")
+                    shown = "null" if item is None else repr(item)
+                    raise InputError(f"{dotted} = {shown} is not allowed: it must be a number")
+
+
+def _whole(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
 
 
 def _number(value: Any) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import keyword
 from pathlib import Path
 
 from dexrepro.config import InputError
@@ -46,15 +48,17 @@ def test_the_force_settles_on_a_spring():
 def new_controller(name: str, folder: Path) -> tuple[Path, Path, str]:
     """Write ``<module>.py`` and ``test_<module>.py``; returns both paths and the command that joins a comparison.
 
-    Raises InputError for a name that is no class name or a file that exists already.
+    Raises InputError for a name that is no class name, or whose file exists already or would hide another module.
     """
-    if not name.isidentifier() or not name[0].isupper():
+    if not name.isidentifier() or not name.isascii() or not name[0].isupper() or keyword.iskeyword(name):
         raise InputError(f"'{name}' is not allowed: it must be a class name such as MyLaw")
     module = "".join(f"_{c.lower()}" if c.isupper() else c for c in name).lstrip("_")
     law, test = folder / f"{module}.py", folder / f"test_{module}.py"
     for path in (law, test):
         if path.exists():
             raise InputError(f"{path} exists already; choose another name")
+    if importlib.util.find_spec(module) is not None:
+        raise InputError(f"'{name}' is not allowed: {law.name} would hide the module '{module}' of Python or a package")
     law.write_text(_LAW.format(name=name))
     test.write_text(_TEST.format(name=name, module=module))
     case = f"{{law: {{_target_: {module}.{name}, gain: 0.02, desired_force: 1.0, dt: 0.001}}}}"

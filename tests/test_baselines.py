@@ -72,6 +72,19 @@ def test_a_tolerance_set_by_hand_survives_an_update(stored: Path) -> None:
     assert entry["reason"] == by_hand["reason"]
 
 
+def test_a_sensitivity_once_seen_remains_while_the_number_is_the_same(stored: Path) -> None:
+    def widen(data) -> None:
+        for name, value in (("decay.plain.final", 1.0), ("decay.fast.final", 2.0)):
+            entry = data["metrics"]["decay"][name]
+            entry.update(value=value * entry["value"], rtol=0.3)
+
+    edit(stored, widen)
+    baselines.update_chapter("90", RESULTS, accept=[], workers=1)
+    entries = read_json(stored)["metrics"]["decay"]
+    assert entries["decay.plain.final"]["rtol"] == 0.3
+    assert entries["decay.fast.final"]["rtol"] == 1e-3, "another number than before"
+
+
 def test_without_results_the_command_to_run_is_named(toy: Path) -> None:
     with pytest.raises(baselines.ResultsMissing, match="dexrepro run chapter=90 only=decay"):
         baselines.check_chapter("90", RESULTS)

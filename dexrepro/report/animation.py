@@ -17,6 +17,7 @@ from dexrepro.config import InputError, nearest
 from dexrepro.experiment import Config, Experiment, Film, Recording
 from dexrepro.physics import rendering
 from dexrepro.report import style
+from dexrepro.report.damage import check_result
 from dexrepro.runner import live
 from dexrepro.storage import load_recording, read_json, read_yaml
 
@@ -31,10 +32,12 @@ def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
     """Write ``animation/<case>.<kind>`` and a still ``<case>.png`` into a result folder; returns the animation's path.
 
     The module's ``FILM`` says which case is shown, how it is looked at and what is drawn alongside; another case is
-    shown in the same way. Raises InputError where there is no result, no scene, no such case, or no encoder for MP4.
+    shown in the same way. Raises InputError where there is no result or a damaged one, no scene, no such
+    case, or no encoder for MP4.
     """
     if not (folder / "run.json").exists():
         raise InputError(f"{folder} holds no result (no run.json)")
+    check_result(folder, "config.yaml", series=True)
     run = read_json(folder / "run.json")
     experiment = chapters.load(run["chapter"]).experiment(run["experiment"])
     if not experiment.has("scene"):

@@ -9,6 +9,7 @@ import numpy as np
 
 from dexrepro.config import InputError, differences
 from dexrepro.report import style
+from dexrepro.report.damage import check_result
 from dexrepro.storage import load_recording, read_json, read_yaml
 
 PANELS = 6
@@ -17,11 +18,12 @@ PANELS = 6
 def compare(a: Path, b: Path) -> Iterator[str]:
     """Yield what differs, a line each, and write ``diff-<b>.png`` into the folder ``a``'s parent.
 
-    Raises InputError where a folder holds no result.
+    Raises InputError where a folder holds no result, or a damaged one.
     """
     for folder in (a, b):
         if not (folder / "metrics.json").exists():
             raise InputError(f"{folder} holds no result (no metrics.json)")
+        check_result(folder, "config.yaml", "metrics.json", "claims.json", series=True)
     yield from (
         f"config   {line.replace('book', str(b))}"
         for line in differences(*(read_yaml(folder / "config.yaml") for folder in (a, b)))

@@ -26,6 +26,7 @@ from dexrepro.experiment import (
     Experiment,
 )
 from dexrepro.report import equations, parameters, studies, symbols
+from dexrepro.report.damage import check_result
 from dexrepro.report.style import file_stem
 from dexrepro.storage import read_json, whole_folder
 
@@ -102,6 +103,7 @@ class _Report:
         made = [e for e in chapter.experiments if (place / e.name / "run.json").exists()]
         metrics: dict[str, Any] = {}
         for experiment in made:
+            check_result(place / experiment.name, "metrics.json", "claims.json")
             metrics |= read_json(place / experiment.name / "metrics.json")
         experiments = []
         for experiment in made:
@@ -226,6 +228,7 @@ class _Report:
     def _own_runs(self) -> list[dict[str, Any]]:
         runs = []
         for path in sorted(self.results.glob("runs/*/run.json")):
+            check_result(path.parent)
             run = read_json(path)
             runs.append(
                 {"name": path.parent.name, "chapter": run["chapter"], "differs": "; ".join(run["differs"][:12])}

@@ -37,6 +37,9 @@ def from_urdf(path: str, end: str, base: Sequence[float] = (0.0, 0.0, 0.0)) -> A
     if end not in links:
         raise ValueError(f"'{path}' has no link '{end}'; there are: {', '.join(links)}")
     tree = _Tree(links, into)
+    for node in into.values():
+        if _name(node.find("parent"), "link") not in links:
+            raise ValueError(f"joint '{_name(node)}' of '{path}' has no parent link that is in the file")
     chain = [node for node in tree.above(end) if node.get("type") != "fixed"]
     for node in chain:
         if node.get("type") not in TURNING:
@@ -68,6 +71,8 @@ class _Tree:
         """Joints from the root to a link."""
         chain: list[xml.Element] = []
         while name in self.into:
+            if self.into[name] in chain:
+                raise ValueError(f"the joints form a loop at link '{name}'; they must form a tree")
             chain.insert(0, self.into[name])
             name = _name(chain[0].find("parent"), "link")
         return chain
@@ -117,7 +122,17 @@ def _name(node: xml.Element | None, attribute: str = "name") -> str:
 
 
 def _floats(node: xml.Element | None, attribute: str, default: str) -> tuple[float, ...]:
-    return tuple(float(value) for value in (default if node is None else node.get(attribute, default)).split())
+    text = default if node is None else node.get(attribute, default)
+    try:
+        values = tuple(map(float, text.split()))
+        if any(map(math.isnan, values)) or len(values) != len(default.split() or values):
+            raise ValueError
+    except ValueError:
+        tag = "" if node is None else node.tag
+        raise ValueError(
+            f'<{tag} {attribute}="{text}"> does not hold {len(default.split()) or "finite"} numbers'
+        ) from None
+    return values
 
 
 def _pose(node: xml.Element) -> Pose:
@@ -129,6 +144,10 @@ def _joint(node: xml.Element, origin: Pose) -> Joint:
     axis = np.array(_floats(node.find("axis"), "xyz", "1 0 0"))
     limit, bounded = node.find("limit"), node.get("type") == "revolute"
     (lower,), (upper,) = _floats(limit, "lower", "0"), _floats(limit, "upper", "0")
+    if not np.any(axis):
+        raise ValueError(f"joint '{_name(node)}' has the axis 0 0 0; it must have a direction")
+    if bounded and lower > upper:
+        raise ValueError(f"joint '{_name(node)}' has the limits {lower:g} to {upper:g}; the lower must not be above")
     (effort,), (velocity,) = _floats(limit, "effort", "inf"), _floats(limit, "velocity", "inf")
     return Joint(
         _name(node),
@@ -160,7 +179,9 @@ def _shapes(link: xml.Element, frame: Pose) -> list[Shape]:
         geometry = node.find("geometry")
         for kind, names in {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length")}.items():
             if geometry is not None and (shape := geometry.find(kind)) is not None:
-                size = tuple(value for name in names for value in _floats(shape, name, "0"))
+                size = tuple(
+                    value for name in names for value in _floats(shape, name, "0 0 0" if kind == "box" else "0")
+                )
                 look = colour if len(colour) == 4 else GREY
                 found.append(Shape(kind, size, frame @ _pose(node), look, collides=bool(nodes)))
     return found

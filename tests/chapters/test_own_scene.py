@@ -148,6 +148,9 @@ FIXED = "{_target_: dexrepro.control.holding.FixedDistance, dt: 1, displacement:
         ("leader", "{csv: no.csv}", "scene.leader.csv: cannot read 'no.csv'"),
         ("law", "{_target_: fractions.Fraction}", r"Fraction is called with \(\); it must be \(position, force\)"),
         ("start", "[0.1]", r"scene.start = \[0.1\] is not allowed: it must be 2 joint angles"),
+        ("start", "5", "scene.start = 5 is not allowed: it must be 2 joint angles"),
+        ("offset", "[0,0]", r"scene.offset = \[0, 0\] is not allowed: it must be three numbers"),
+        ("gravity", "5", "scene.gravity = 5 is not allowed: it must be three numbers"),
         ("law", FIXED, "a force law needs the direction it acts along"),
     ],
 )

@@ -71,6 +71,10 @@ def test_limits_and_base_are_those_given(path: Path) -> None:
         (("continuous", "prismatic"), "joint 'yaw' of .* is prismatic"),
         ((INERTIAL.format(0.1, 0.5), ""), None),
         (('value="0.2"', 'value="-0.2"'), "link 'eye' of .* has the mass -0.2 kg"),
+        (('value="2"', 'value="heavy"'), '<mass value="heavy"> does not hold 1 numbers'),
+        (('value="2"', 'value="nan"'), '<mass value="nan"> does not hold 1 numbers'),
+        (('parent link="floor"', 'parent link="one"'), "the joints form a loop at link 'one'"),
+        (('parent link="floor"', 'parent link="flor"'), "joint '.*' of .* has no parent link that is in the file"),
         (('value="2"', 'value="-4"'), "link 'one' of .* has the mass -4 kg; it must not be negative"),
     ],
 )

@@ -35,7 +35,14 @@ def model(arm: Arm, gravity: Sequence[float], mass_error: float) -> RigidBodyMod
     """What laws may know of the arm."""
     if not isinstance(arm, Arm):
         raise ValueError("scene.arm is no arm: name one by its _target_, such as dexrepro.robots.urdf.from_urdf")
+    if not _vector(gravity):
+        raise ValueError(f"scene.gravity = {gravity} is not allowed: it must be three numbers")
     return RigidBodyModel(arm, gravity, mass_error)
+
+
+def _vector(value: Any, length: int = 3) -> bool:
+    numbers = isinstance(value, list) and all(isinstance(item, int | float) for item in value)
+    return numbers and len(value) == length
 
 
 def scene(config: Config) -> World:
@@ -59,8 +66,10 @@ def start(config: Config, path: Path) -> Array:
     Raises InputError that names the point where the path, displaced by the offset, leaves the arm's reach.
     """
     arm, found, first = config.arm, config.start, None
+    if not _vector(config.offset):
+        raise InputError(f"scene.offset = {config.offset} is not allowed: it must be three numbers")
     offset = np.array(config.offset, dtype=float)
-    if found is not None and len(found) != arm.dof:
+    if found is not None and not _vector(found, arm.dof):
         raise InputError(f"scene.start = {found} is not allowed: it must be {arm.dof} joint angles, or null")
     for time in np.linspace(0.0, config.duration, CHECKED):
         place = path(time).position + offset

@@ -1,0 +1,161 @@
+"""What a hurried user types, or finds on a damaged disk, gets one sentence and leaves the results as they are."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from dexrepro import chapters, cli
+from dexrepro.config import InputError
+from dexrepro.plan import plan_chapter
+
+RESULT = Path("results/chapter90/decay")
+
+
+@pytest.fixture
+def result(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The toy chapter has been run in this folder."""
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    assert cli.main(["run", "workers=1", "quiet=true"]) == 0
+    return toy / RESULT
+
+
+@pytest.mark.parametrize(
+    ("override", "sentence"),
+    [
+        ("seed=-1", "seed = -1 is not allowed: it must be a whole number of 0 or greater"),
+        ("seed=true", "seed = True is not allowed"),
+        ("workers=true", "workers = True is not allowed"),
+        ("results=null", "results = None is not allowed: it must be the name of a folder"),
+        ("results=5", "results = 5 is not allowed"),
+        ("force=perhaps", "force = perhaps is not allowed: it must be true or false"),
+        ("figure=[90.1,90.2]", "it must be one figure or table"),
+        ("+decai.rate=2", "unknown key 'decai': did you mean 'decay'?"),
+        ("decay.cases=5", "decay.cases = 5 is not allowed: cases are names with what each changes"),
+        ("+decay.cases.mine=5", "decay.cases.mine = 5 is not allowed"),
+        ("+scene=squeeze", "needs --config-dir FOLDER, the folder that holds scene/squeeze.yaml"),
+        ("decay.gains=[]", "a list that a case is made of is empty"),
+        ("decay.duration=null", "decay.duration = null is not allowed: it must be a number"),
+        ("decay.start=false", "decay.start = False is not allowed: it must be a number"),
+        ("decay.gains=[1,two]", "decay.gains.1 = 'two' is not allowed: it must be a number"),
+        ("decay", "'decay' is not an override of the form key=value, such as"),
+    ],
+)
+def test_a_wrong_value_names_its_key_and_what_is_allowed(toy: Path, override: str, sentence: str) -> None:
+    cut = ["decay.cases={}", "~decay.cases.plain", "~decay.cases.fast", "~decay.cases.halved"]
+    with pytest.raises(InputError) as caught:
+        cli.run_command([*(cut if "[]" in override else []), "only=decay", override])
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_null_still_turns_a_number_off_that_is_no_quantity(toy: Path) -> None:
+    plans, _ = plan_chapter("90", ["only=decay", "decay.gain=null"])
+    assert plans[0].jobs[0].config["gain"] is None
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (b"only: [a\n b: c: d\n", "bad.yaml is no YAML file: while parsing a flow sequence"),
+        (b"\tonly: decay\n", "bad.yaml is no YAML file"),
+        (b"only: caf\xe9\n", "bad.yaml is no YAML file: 'utf-8' codec"),
+        (b"- a\n", "bad.yaml holds no keys"),
+    ],
+)
+def test_a_file_of_the_user_that_is_no_yaml_is_named(toy: Path, content: bytes, sentence: str) -> None:
+    (toy / "mine/own").mkdir(parents=True)
+    (toy / "mine/own/bad.yaml").write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        cli.run_command(["--config-dir", "mine", "+own=bad"])
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def cut_short(name: str) -> Callable[[Path], object]:
+    return lambda folder: (folder / name).write_bytes((folder / name).read_bytes()[:60])
+
+
+@pytest.mark.parametrize(
+    ("damage", "commands", "sentence"),
+    [
+        (cut_short("run.json"), ("draw", "report", f"render {RESULT}", f"diff {RESULT} {RESULT}", "check"), "run.json"),
+        (cut_short("metrics.json"), ("draw", "report", f"diff {RESULT} {RESULT}", "check"), "metrics.json cannot be"),
+        (lambda folder: (folder / "claims.json").unlink(), ("report", "check"), "claims.json cannot be used (No such"),
+        (lambda folder: (folder / "run.json").write_text("{}"), ("draw", "report"), "it has no 'chapter'"),
+        (lambda folder: (folder / "metrics.json").write_text("[1]"), ("draw", "check"), "it holds no dict"),
+        (lambda folder: (folder / "config.yaml").write_text("a: [b"), ("draw", f"diff {RESULT} {RESULT}"), "g.yaml c"),
+        (cut_short("series/plain.csv.gz"), ("draw", f"diff {RESULT} {RESULT}"), "plain.csv.gz cannot be used"),
+        (lambda folder: (folder / "series/plain.csv.gz").unlink(), ("draw",), "no series of the case 'plain'"),
+    ],
+)  # fmt: skip
+def test_a_damaged_result_is_named(
+    result: Path, damage: Callable[[Path], object], commands: tuple[str, ...], sentence: str
+) -> None:
+    damage(result)
+    left = sorted(Path("results").rglob("*.*"))
+    for command in commands:
+        with pytest.raises(InputError) as caught:
+            cli._dispatch([*command.split()])
+        assert sentence in str(caught.value), command
+        assert "delete the result and run it again" in str(caught.value)
+        assert "\n" not in str(caught.value)
+    assert sorted(Path("results").rglob("*.*")) == left
+
+
+@pytest.mark.parametrize(
+    ("command", "sentence"),
+    [
+        ("draw results=nowhere", "results = nowhere is not allowed: there is no such folder"),
+        ("report results=nowhere", "results = nowhere is not allowed"),
+        ("draw only=decay results=.", "there is no such result in ."),
+        ("draw figure=90.77", "unknown figure '90.77'"),
+        ("check workers=two", "workers = two is not allowed"),
+        ("check --update only=decay", "--update renews whole chapters"),
+        ("render case=plain", "of which experiment?"),
+        ("study only=decai samples=1", "did you mean 'decay'?"),
+        ("study samples=0", "samples = 0 is not allowed: it must be a whole number of 1 or greater"),
+        ("study samples=-3", "samples = -3 is not allowed"),
+        ("study hours=nan", "hours = nan is not allowed: it must be a number greater than 0"),
+        ("study hours=-1", "hours = -1 is not allowed"),
+        ("study smaples=3", "there are: chapter=N, only=EXPERIMENT, figure=ID, results=DIR, claim=, samples=, hours="),
+        ("new controller Random", "random.py would hide the module 'random'"),
+        ("new controller None", "it must be a class name such as MyLaw"),
+    ],
+)
+def test_a_wrong_argument_of_another_command_is_refused(toy: Path, command: str, sentence: str) -> None:
+    with pytest.raises(InputError) as caught:
+        cli._dispatch(command.split())
+    assert sentence in str(caught.value)
+    assert not list(toy.iterdir()), "nothing has been written"
+
+
+def test_a_file_that_cannot_be_written_is_named(
+    result: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device", "results/report")
+
+    monkeypatch.setattr("dexrepro.report.page.whole_folder", full)
+    assert cli.main(["report"]) == 2
+    assert capsys.readouterr().err == "dexrepro: results/report: No space left on device\n"
+
+
+def test_check_of_one_experiment_needs_no_other(result: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("dexrepro.baselines.baseline_dir", lambda: tmp_path / "none")
+    assert cli._dispatch(["check", "only=decay"]) == 1, "metrics without a baseline are drift"
+
+
+def test_the_printed_form_of_every_erratum_can_be_selected(tmp_path: Path) -> None:
+    for number in chapters.numbers():
+        for erratum in chapters.load(number).errata:
+            if erratum.switch:
+                overrides = shlex.split(erratum.switch)
+                named = overrides[0].lstrip("+").partition(".")[0]
+                only = [f"only={named}"] if named in [e.name for e in chapters.load(number).experiments] else []
+                plans, _ = plan_chapter(number, [*overrides, *only, f"results='{tmp_path}'"])
+                assert plans, erratum.id
