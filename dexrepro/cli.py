@@ -1,4 +1,4 @@
-"""The command line: dexrepro run | draw | report | list | check | diff. Thin: each command calls one function."""
+"""The command line: dexrepro run | list | check | draw | report | render | study | new | diff; each command is thin."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ import argparse
 import json
 import math
 import os
-import re
 import signal
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any
@@ -18,9 +17,11 @@ from rich.console import Console
 from rich.table import Table
 
 from dexrepro import __version__
+from dexrepro.config import InputError
 
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--help", "-h", "--info", "-i", "--hydra-help", "--resolve")
 SHOWN = 6  # names in one line of the check
+STUDY = ("claim", "samples", "hours")  # what only a study knows
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
 
 out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 160)
@@ -38,8 +39,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         err.print("interrupted; the same command completes what is missing", markup=False)
         return INTERRUPTED
     except Exception as error:
-        from dexrepro.config import InputError
-
         if isinstance(error, BrokenPipeError):  # who reads the output has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return FAILED
@@ -105,20 +104,14 @@ def _parser() -> argparse.ArgumentParser:
 
 def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
+    from dexrepro.selection import checked_chapter, quoted
+
     arguments = [quoted(argument) for argument in arguments]
     extra_dir, overrides = _config_dir_option(arguments)
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
         given = [text for text in overrides if not text.startswith("-") and "=" in text]
-        return _launch([*arguments, *_checked_chapter(given, extra_dir)], _run_job)
+        return _launch([*arguments, *checked_chapter(given, extra_dir)], _run_job)
     return run_overrides(overrides, extra_dir)
-
-
-def quoted(argument: str) -> str:
-    """Chapter and figure numbers as texts: Hydra refuses an int as a group choice and reads 2.10 as 2.1."""
-    match = re.fullmatch(r"(chapter|figure)=([\w.]+(?:,[\w.]+)*)", argument)
-    if not match or match[2] == "null":
-        return argument
-    return f"{match[1]}=" + ",".join(f"'{value}'" for value in match[2].split(","))
 
 
 def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
@@ -126,8 +119,6 @@ def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
     for index, argument in enumerate(arguments):
         if argument in ("--config-dir", "-cd"):
             if index + 1 == len(arguments):
-                from dexrepro.config import InputError
-
                 raise InputError("--config-dir needs a folder")
             extra_dir = arguments[index + 1]
             del rest[index : index + 2]
@@ -142,8 +133,6 @@ def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
 def _make_importable(folder: str) -> None:
     """Let ``_target_`` name classes of files in the user's folder, here and in the processes started from here."""
     if not Path(folder).is_dir():
-        from dexrepro.config import InputError
-
         raise InputError(f"--config-dir = {folder} is not allowed: there is no such folder")
     if (path := str(Path(folder).resolve())) not in sys.path:
         sys.path.insert(0, path)
@@ -169,6 +158,7 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
     from dexrepro.runner import Outcome, run_plans
+    from dexrepro.selection import chapters_of, positive_workers
 
     numbers, rest = chapters_of(overrides, extra_dir)
     plans: list[Any] = []
@@ -192,75 +182,6 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     if not quiet:
         _print_summary(outcome)
     return outcome
-
-
-def positive_workers(value: Any) -> int | None:
-    """The number of processes, None for one a core."""
-    if value is None or (isinstance(value, int) and not isinstance(value, bool) and value > 0):
-        return value
-    from dexrepro.config import InputError
-
-    raise InputError(f"workers = {value} is not allowed: it must be a whole number of 1 or greater")
-
-
-def chapters_of(overrides: Iterable[str], extra_dir: str | None = None) -> tuple[list[str], list[str]]:
-    """Chapters that overrides select, and the other overrides.
-
-    Without ``chapter=`` the chapter follows from the figure, the experiment or the keys named, also in the user's own
-    files of ``extra_dir``; else it is the book.
-    """
-    from dexrepro import chapters
-    from dexrepro.config import InputError
-
-    chosen: list[str] = []
-    rest: list[str] = []
-    for text in overrides:
-        key, _, value = text.partition("=")
-        if key == "chapter":
-            chosen = [part.strip("'\" ") for part in value.strip("[]").split(",")]
-        else:
-            rest.append(text)
-    for number in chosen:
-        if number not in (*chapters.numbers(), chapters.OWN):
-            raise InputError(f"unknown chapter '{number}'; chapters: {', '.join(chapters.numbers())}")
-    if chosen:
-        return chosen, rest
-    return _implied_chapters(rest, extra_dir) or list(chapters.numbers()), rest
-
-
-def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
-    from dexrepro import chapters
-    from dexrepro.config import InputError, nearest, own_keys
-
-    values = dict(text.partition("=")[::2] for text in overrides)
-    figure = values.get("figure", "null").strip("'\"")
-    if figure != "null":
-        number = figure.lstrip("[T'").partition(".")[0]
-        if number not in chapters.numbers():
-            raise InputError(f"unknown figure '{figure}': no chapter {number}")
-        return [number]
-    owner = {e.name: number for number in chapters.numbers() for e in chapters.load(number).experiments}
-    only = values.get("only", "null").strip("'\"[]")
-    named = [] if only == "null" else [name.strip("'\" ") for name in only.split(",")]
-    for name in named:
-        if name not in owner:
-            raise InputError(f"unknown experiment '{name}': {nearest(name, owner)}")
-    named += [key.lstrip("+~").partition(".")[0] for key in values]
-    named += own_keys(overrides, extra_dir) if extra_dir else []
-    if "scene" in named:
-        return [chapters.OWN]
-    return list(dict.fromkeys(owner[name] for name in named if name in owner))
-
-
-def _checked_chapter(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
-    """Refuse what no job of a sweep could use, before Hydra starts any; the chapter where overrides only imply it."""
-    from dexrepro.config import check_overrides, compose_chapter
-
-    numbers, rest = chapters_of(overrides, extra_dir)
-    if extra_dir is None:  # what its files add is known to Hydra alone
-        check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
-    named = any(re.match(r"chapter=|figure=.*,", text) for text in overrides)
-    return [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and not named else []
 
 
 def _launch(arguments: Sequence[str], job: Callable[[Any], None]) -> int:
@@ -314,38 +235,6 @@ def _print_summary(outcome: Any) -> None:
 # --------------------------------------------------------------------------------------------------- other commands
 
 
-def _selected(options: argparse.Namespace, extra: Sequence[str] = ()) -> tuple[list[str], Path, list[str]]:
-    """Chapters, results folder and experiments from ``chapter=N results=DIR only=NAME figure=ID``."""
-    from dexrepro.config import InputError
-    from dexrepro.plan import select
-
-    overrides = [quoted(text) for text in options.selection]
-    for text in overrides:
-        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers", *extra):
-            more = "".join(f", {key}=" for key in extra)
-            raise InputError(
-                f"'{text}' has no meaning here; there are: chapter=N, only=EXPERIMENT, figure=ID, results=DIR{more}"
-            )
-    numbers, rest = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
-    values = dict(text.partition("=")[::2] for text in rest)
-    only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]
-    workers = values.get("workers")
-    options.workers = positive_workers(int(workers) if workers and workers.isdigit() else workers)
-    if only or "figure" in values:
-        figure = values.get("figure", "").strip("'\"") or None
-        only = [experiment.name for number in numbers for experiment in select(number, only or None, figure)]
-    return numbers, Path(values.get("results", "results").strip("'\"")), only
-
-
-def _existing(results: Path) -> Path:
-    """A results folder from which something is to be read."""
-    from dexrepro.config import InputError
-
-    if str(results) != "results" and not results.is_dir():
-        raise InputError(f"results = {results} is not allowed: there is no such folder")
-    return results
-
-
 def list_command(options: argparse.Namespace) -> int:
     """Everything there is, as text or JSON."""
     from dexrepro.report.listing import listing
@@ -367,19 +256,19 @@ def list_command(options: argparse.Namespace) -> int:
 def check_command(options: argparse.Namespace) -> int:
     """Exit status 0: same; 1: drift; 2: results missing."""
     from dexrepro import baselines
-    from dexrepro.config import InputError
+    from dexrepro.selection import existing, selected
 
-    numbers, results, only = _selected(options)
+    numbers, only, results, workers, _ = selected(options.selection)
     if options.update and only:
         raise InputError("--update renews whole chapters; leave out only= and figure=")
     if options.update:
         for number in numbers:
-            for line in baselines.update_chapter(number, results, accept=options.accept, workers=options.workers):
+            for line in baselines.update_chapter(number, results, accept=options.accept, workers=workers):
                 out.print(line, markup=False)
             out.print(f"wrote {baselines.baseline_dir() / f'chapter{number}.json'}", markup=False)
         return OK
     try:
-        reports = [baselines.check_chapter(number, _existing(results), only) for number in numbers]
+        reports = [baselines.check_chapter(number, existing(results), only) for number in numbers]
     except baselines.ResultsMissing as missing:
         err.print(str(missing), markup=False)
         return WRONG
@@ -412,12 +301,12 @@ def _print_check(report: dict[str, Any]) -> None:
 
 def draw_command(options: argparse.Namespace) -> int:
     """Draw figures and tables again from what is on disk."""
-    from dexrepro.config import InputError
     from dexrepro.report.damage import check_result
     from dexrepro.runner import redraw
+    from dexrepro.selection import existing, selected
 
-    numbers, results, only = _selected(options)
-    folders = [path.parent for number in numbers for path in _existing(results).glob(f"chapter{number}/*/run.json")]
+    numbers, only, results, _, _ = selected(options.selection)
+    folders = [path.parent for number in numbers for path in existing(results).glob(f"chapter{number}/*/run.json")]
     if not (chosen := [folder for folder in folders if not only or folder.name in only]):
         raise InputError(f"there is no such result in {results}; run first: dexrepro run {' '.join(options.selection)}")
     for folder in chosen:
@@ -430,9 +319,9 @@ def draw_command(options: argparse.Namespace) -> int:
 def report_command(options: argparse.Namespace) -> int:
     """Build results/report/index.html."""
     from dexrepro.report import page
+    from dexrepro.selection import existing, selected
 
-    _, results, _ = _selected(options)
-    out.print(str(page.build(_existing(results))), markup=False)
+    out.print(str(page.build(existing(selected(options.selection).results))), markup=False)
     return OK
 
 
@@ -452,13 +341,12 @@ def render_command(options: argparse.Namespace) -> int:
     missing or older than its recording.
     """
     from dexrepro import chapters
-    from dexrepro.config import InputError
     from dexrepro.report import animation
+    from dexrepro.selection import selected
 
     folders = [Path(text) for text in options.selection if "=" not in text]
-    options.selection = [text for text in options.selection if "=" in text]
-    numbers, results, only = _selected(options, ("case", "format"))
-    values = dict(text.partition("=")[::2] for text in options.selection)
+    words = [text for text in options.selection if "=" in text]
+    numbers, only, results, _, values = selected(words, ("case", "format"))
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
         raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
@@ -487,16 +375,16 @@ def study_command(options: argparse.Namespace) -> int:
     from concurrent.futures.process import BrokenProcessPool
 
     from dexrepro import study
+    from dexrepro.selection import selected
 
     if any(text.startswith(("jobs=", "hydra")) for text in options.selection):
         return _study_jobs(options)
-    numbers, results, only = _selected(options, ("claim", "samples", "hours"))
-    values = dict(text.partition("=")[::2] for text in options.selection)
+    numbers, only, results, workers, values = selected(options.selection, STUDY)
     samples, hours = _samples(values.get("samples", "200")), _hours(values.get("hours"))
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
             try:
-                path = study.run(number, name, samples, results, workers=options.workers, hours=hours)
+                path = study.run(number, name, samples, results, workers=workers, hours=hours)
             except BrokenProcessPool:
                 err.print("a process of the study was killed; the same command completes what is missing", markup=False)
                 return FAILED
@@ -505,7 +393,6 @@ def study_command(options: argparse.Namespace) -> int:
 
 
 def _samples(text: str) -> int:
-    from dexrepro.config import InputError
 
     if not text.isdecimal() or int(text) < 1:
         raise InputError(f"samples = {text} is not allowed: it must be a whole number of 1 or greater")
@@ -513,7 +400,6 @@ def _samples(text: str) -> int:
 
 
 def _hours(text: str | None) -> float | None:
-    from dexrepro.config import InputError
 
     with suppress(ValueError):
         if text is None or (math.isfinite(float(text)) and float(text) > 0):
@@ -524,19 +410,19 @@ def _hours(text: str | None) -> float | None:
 def _study_jobs(options: argparse.Namespace) -> int:
     """A study by jobs of a Hydra launcher, which share its samples."""
     from dexrepro import study
-    from dexrepro.config import InputError
+    from dexrepro.selection import selected
 
     values = dict(text.partition("=")[::2] for text in options.selection)
     jobs = values.pop("jobs", "")
     if not jobs.isdigit() or int(jobs) < 1:
         raise InputError(f"jobs = {jobs or 'null'} is not allowed: it must be a whole number of 1 or greater")
     launcher = [f"{key}={value}" for key, value in values.items() if key.startswith("hydra")]
-    options.selection = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
-    numbers, folder, only = _selected(options, ("claim", "samples", "hours"))
+    words = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
+    numbers, only, folder, _, _ = selected(words, STUDY)
     _samples(values.get("samples", "200")), _hours(values.get("hours"))
     names = [name for number in numbers for name in study.experiments_of(number, only, values.get("claim"))]
-    selection = ",".join(json.dumps(text) for text in options.selection)
-    results = [text for text in options.selection if text.startswith("results=")]
+    selection = ",".join(json.dumps(text) for text in words)
+    results = [text for text in words if text.startswith("results=")]
     status = _launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
     for name in names:
         if (path := study.summary_file(name, folder)).exists():

@@ -1,0 +1,122 @@
+"""What a command works on: chapters, experiments, results and workers, from words such as ``chapter=2 only=NAME``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from dexrepro import chapters
+from dexrepro.config import InputError, check_overrides, compose_chapter, nearest, own_keys
+from dexrepro.plan import select
+
+
+class Selection(NamedTuple):
+    """Numbers of the chapters, names of the experiments (none: all), folder of the results, processes (None: one a
+    core), and the values of the words that only the command at hand knows."""
+
+    chapters: list[str]
+    only: list[str]
+    results: Path
+    workers: int | None
+    extra: dict[str, str]
+
+
+def selected(words: Iterable[str], extra: Sequence[str] = ()) -> Selection:
+    """What the words ``key=value`` of a command select; ``extra``: keys that it knows beside the common ones."""
+    overrides = [quoted(text) for text in words]
+    for text in overrides:
+        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers", *extra):
+            more = "".join(f", {key}=" for key in extra)
+            raise InputError(
+                f"'{text}' has no meaning here; there are: chapter=N, only=EXPERIMENT, figure=ID, results=DIR{more}"
+            )
+    values = dict(text.partition("=")[::2] for text in overrides)
+    numbers, _ = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
+    only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]
+    if only or "figure" in values:
+        figure = values.get("figure", "").strip("'\"") or None
+        only = [experiment.name for number in numbers for experiment in select(number, only or None, figure)]
+    workers = values.get("workers")
+    return Selection(
+        numbers,
+        only,
+        Path(values.get("results", "results").strip("'\"")),
+        positive_workers(int(workers) if workers and workers.isdigit() else workers),
+        {key: value for key, value in values.items() if key in extra},
+    )
+
+
+def chapters_of(overrides: Iterable[str], extra_dir: str | None = None) -> tuple[list[str], list[str]]:
+    """Chapters that overrides select, and the other overrides.
+
+    Without ``chapter=`` the chapter follows from the figure, the experiment or the keys named, also in the user's own
+    files of ``extra_dir``; else it is the book.
+    """
+    chosen: list[str] = []
+    rest: list[str] = []
+    for text in overrides:
+        key, _, value = text.partition("=")
+        if key == "chapter":
+            chosen = [part.strip("'\" ") for part in value.strip("[]").split(",")]
+        else:
+            rest.append(text)
+    for number in chosen:
+        if number not in (*chapters.numbers(), chapters.OWN):
+            raise InputError(f"unknown chapter '{number}'; chapters: {', '.join(chapters.numbers())}")
+    if chosen:
+        return chosen, rest
+    return _implied_chapters(rest, extra_dir) or list(chapters.numbers()), rest
+
+
+def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
+    values = dict(text.partition("=")[::2] for text in overrides)
+    figure = values.get("figure", "null").strip("'\"")
+    if figure != "null":
+        number = figure.lstrip("[T'").partition(".")[0]
+        if number not in chapters.numbers():
+            raise InputError(f"unknown figure '{figure}': no chapter {number}")
+        return [number]
+    owner = {e.name: number for number in chapters.numbers() for e in chapters.load(number).experiments}
+    only = values.get("only", "null").strip("'\"[]")
+    named = [] if only == "null" else [name.strip("'\" ") for name in only.split(",")]
+    for name in named:
+        if name not in owner:
+            raise InputError(f"unknown experiment '{name}': {nearest(name, owner)}")
+    named += [key.lstrip("+~").partition(".")[0] for key in values]
+    named += own_keys(overrides, extra_dir) if extra_dir else []
+    if "scene" in named:
+        return [chapters.OWN]
+    return list(dict.fromkeys(owner[name] for name in named if name in owner))
+
+
+def checked_chapter(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
+    """Refuse what no job of a sweep could use, before Hydra starts any; the chapter where overrides only imply it."""
+    numbers, rest = chapters_of(overrides, extra_dir)
+    if extra_dir is None:  # what its files add is known to Hydra alone
+        check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
+    named = any(re.match(r"chapter=|figure=.*,", text) for text in overrides)
+    return [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and not named else []
+
+
+def quoted(argument: str) -> str:
+    """Chapter and figure numbers as texts: Hydra refuses an int as a group choice and reads 2.10 as 2.1."""
+    match = re.fullmatch(r"(chapter|figure)=([\w.]+(?:,[\w.]+)*)", argument)
+    if not match or match[2] == "null":
+        return argument
+    return f"{match[1]}=" + ",".join(f"'{value}'" for value in match[2].split(","))
+
+
+def positive_workers(value: Any) -> int | None:
+    """The number of processes, None for one a core."""
+    if value is None or (isinstance(value, int) and not isinstance(value, bool) and value > 0):
+        return value
+    raise InputError(f"workers = {value} is not allowed: it must be a whole number of 1 or greater")
+
+
+def existing(results: Path) -> Path:
+    """A results folder from which something is to be read."""
+    if str(results) != "results" and not results.is_dir():
+        raise InputError(f"results = {results} is not allowed: there is no such folder")
+    return results
