@@ -71,7 +71,10 @@ def rotation_error(desired: ArrayLike, actual: ArrayLike) -> Array:
 
 
 class PlanarTip:
-    """Closed forms for one state of a planar arm in plain floats, for loops at 1 kHz."""
+    """Closed forms for one state of any planar arm in plain floats, for loops at 1 kHz.
+
+    ``PlanarChain`` has those of three bare rods, batches and dynamics included, at less than half the time.
+    """
 
     def __init__(self, arm: Arm) -> None:
         if not arm.is_planar:

@@ -98,29 +98,15 @@ def _constrained(
 ) -> dict[str, pd.DataFrame]:
     """Constrained primitive, and the same about references that are known with noise (E.g. Sect. 6.5, point 3)."""
     clean, samples, _ = plane.spline_reference(config, movement)
-    references, margins = [clean], [config.cdmp.margin]
+    references = [clean]
     for sigma in config.reference_noise:
         noisy = samples + rng.normal(0, sigma, samples.shape) * np.r_[0, np.ones(len(samples) - 2), 0][:, None]
         at = np.linspace(movement.time[0], movement.time[-1], len(samples))
         references.append(plane.differentiable(at, savgol_filter(noisy, 11, 3, axis=0), movement.time))
-        margins.append(config.cdmp.margin)
     batch = learning.stack(references)
     skill = learning.skill([lesson.second] * len(references), [movement] * len(references))
     velocity = np.broadcast_to(lesson.second.time_constant * lesson.second.velocity, (len(references), 2))
-    constraint = learning.tube(config.cdmp, np.array(margins)[:, None])
-    rate = config.cdmp.projection_rate if config.cdmp.projection else None
-    dt = lesson.durations[1] / config.steps
-    path = rollout(
-        skill,
-        batch,
-        constraint,
-        learning.gains(config.cdmp),
-        learning.law(config.cdmp),
-        dt,
-        batch.position[0],
-        velocity,
-        rate,
-    )
+    path = learning.constrained(skill, batch, config.cdmp, lesson.durations[1] / config.steps, velocity)
     old, block = plane.obstacles(config)
     rows = [
         {
