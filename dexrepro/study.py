@@ -2,8 +2,9 @@
 
 A sample draws every ranged parameter of an experiment, and the seed, from its own generator; all claims of the
 experiment share it. Samples are kept one a line beside the summary, so that a study goes on where it was stopped, here
-or in another checkout; those of another configuration no longer count. The same study may be started any number of
-times, on any machine that shares the results folder: its processes share the samples.
+or in another checkout; those of another configuration, or of claims that said something else, no longer count. The
+same study may be started any number of times, on any machine that shares the results folder: its processes share the
+samples.
 """
 
 from __future__ import annotations
@@ -117,12 +118,18 @@ def evaluate(chapter: str, experiment: str, index: int) -> dict[str, Any]:
         summarise(definition, metrics, Config.of(block))
     measured = finite(flat(experiment, metrics))
     margins = {claim.id: claim.predicate.margin(measured) for claim in claims if claim.predicate}
-    return {"index": index, "digest": _digest(block, seed), "values": _rounded(values), "margins": _rounded(margins),
-            "error": "; ".join(errors) or None}  # fmt: skip
+    return {
+        "index": index,
+        "digest": _digest(claims, block, seed),
+        "values": _rounded(values),
+        "margins": _rounded(margins),
+        "error": "; ".join(errors) or None,
+    }
 
 
-def _digest(block: Mapping[str, Any], seed: float) -> str:
-    return digest_of([block, seed])[:10]
+def _digest(claims: Sequence[Claim], block: Mapping[str, Any], seed: float) -> str:
+    """Changes with the configuration of a sample and with what the claims say."""
+    return digest_of([block, seed, {c.id: c.predicate.text for c in claims if c.predicate}])[:10]
 
 
 def _rounded(numbers: Mapping[str, float | None]) -> dict[str, float | None]:
@@ -176,13 +183,13 @@ def contribute(chapter: str, experiment: str, index: int, results: Path, deadlin
 
 
 def _kept(chapter: str, experiment: str, results: Path, only: int | None = None) -> dict[int, dict[str, Any]]:
-    """The samples there are, shipped or made here, of the present configuration, by index and in its order."""
-    found = {}
+    """The samples there are, shipped or made here, of the present configuration and claims, in the order of index."""
+    found, claims = {}, chapters.load(chapter).claims_of(experiment)
     for folder in (baseline_dir(), results / "baselines"):
         for entry in _read(_lines(folder / "study" / f"{experiment}.json")):
             if only in (None, entry["index"]):
                 values, block = draw(chapter, experiment, entry["index"])
-                if entry["digest"] == _digest(block, values["seed"]):
+                if entry["digest"] == _digest(claims, block, values["seed"]):
                     found[entry["index"]] = entry
     return dict(sorted(found.items()))
 
