@@ -316,9 +316,13 @@ def _width(svg: Path) -> int:
 
 
 def _cell(value: Any) -> str:
-    """A table's entry, with a minus sign at which no line is broken."""
+    """A table's entry: a minus sign at which no line is broken, words in place of ``True`` and of a key."""
     if pd.isna(value):
         return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str) and re.fullmatch(r"[a-z][a-z0-9]+(_[a-z0-9]+)+", value):
+        return value.replace("_", " ")
     return f"{value:.4g}".replace("-", "\u2212") if isinstance(value, float) else str(value)
 
 

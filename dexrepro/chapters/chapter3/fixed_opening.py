@@ -193,7 +193,7 @@ def _sensitivity(metrics: Mapping[str, Metrics]) -> pd.DataFrame:
         if case in metrics and base in metrics:
             holds, held = (x is not None and x < bound for x in (value, before))
             rows.append(
-                {"variant": what, "claim": claim, "metric": metric, "bound": bound, "default": before, "value": value,
-                 "holds": holds, "flips": holds != held}
+                {"variant": what, "claim": claim, "quantity": COLUMNS[metric], "bound": bound, "as shipped": before,
+                 "varied": value, "holds": "yes" if holds else "no", "verdict changes": "yes" if holds != held else "no"}
             )  # fmt: skip
     return pd.DataFrame(rows)

@@ -30,8 +30,8 @@ FIGURES = {
 }
 TABLES = {
     "T5.A": "Mean squared error [cm^2] over random kernels: median, 90 % quantile, deviation from the goal afterwards",
-    "T5.B": "Share of the draws in which one method is better than another",
-    "T5.S": "Sensitivity of the order of methods to what the book does not print",
+    "T5.B": "Share of the draws in which one method is better than another [%]",
+    "T5.S": "Sensitivity of the order of methods to what the book does not print: share of the draws in which it holds",
 }
 METHODS = {"dmp": "DMP", "dmp_plus": "DMP+", "idmp": "IDMP"}
 
@@ -238,15 +238,27 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
     if "default" in recordings:
         tables["T5.A"] = _errors_table(recordings["default"].frames["draws"])
         tables["T5.B"] = _shares_table(metrics["default"], config)
-    columns = ("dmp_plus.beats_dmp", "idmp30.beats_dmp_plus", "idmp60.beats_dmp_plus", "idmp60.after", "ordered")
+    columns = {
+        "dmp_plus.beats_dmp": "DMP+ better than DMP [%]",
+        "idmp30.beats_dmp_plus": "IDMP, m = 30, better than DMP+ [%]",
+        "idmp60.beats_dmp_plus": "IDMP, m = 60, better than DMP+ [%]",
+        "ordered": "IDMP better than DMP+ better than DMP [%]",
+        "idmp60.after": "IDMP, m = 60: distance from goal after T [cm]",
+    }
+    scales = {"idmp60.after": 1.0}
     rows = [
-        {"variant": case, "kernels": count, **{column: values.get(f"n{count}.{column}") for column in columns}}
+        {"variant": case, "kernels": count}
+        | {text: _scaled(values.get(f"n{count}.{key}"), scales.get(key, 100.0)) for key, text in columns.items()}
         for case, values in metrics.items()
         if case in recordings
         for count in config.kernels.counts
     ]
     tables["T5.S"] = pd.DataFrame(rows)
     return tables
+
+
+def _scaled(value: float | int | None, factor: float) -> float | None:
+    return None if value is None else factor * value
 
 
 def _errors_table(draws: pd.DataFrame) -> pd.DataFrame:
@@ -273,6 +285,6 @@ def _shares_table(metrics: Metrics, config: Config) -> pd.DataFrame:
         f"{best}.beats_dmp_plus_equal": "IDMP better than a DMP+ of equal size",
     }
     return pd.DataFrame(
-        {"comparison": text, **{f"{n} kernels": metrics.get(f"n{n}.{key}") for n in config.kernels.counts}}
+        {"comparison": text} | {f"{n} kernels": _scaled(metrics.get(f"n{n}.{key}"), 100.0) for n in config.kernels.counts}
         for key, text in names.items()
     )

@@ -142,7 +142,7 @@ def tabulate(
     for case, (constraint, pull, share) in SYMBOLS.items():
         if case in metrics:
             states = recordings[case].frames["states"]
-            worst = {f"worst dV/dt, g1 = {g:.2g}": states[f"rate_{g:.2g}"].max() for g in config.couplings}
+            worst = {f"worst dV/dt, g1 = {g:.2g} [1/s]": states[f"rate_{g:.2g}"].max() for g in config.couplings}
             rows.append({"case": case, "constraint": constraint, "W": pull, "B": share, **worst})
     return {"T6.2": pd.DataFrame(rows)}
 
