@@ -144,8 +144,8 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
     if "default" in recordings:
         reached = recordings["default"].frames["goals"]
         table = reached.groupby(["blocks", "x", "y"]).clearance.median().unstack("y").reset_index()
-        tables["T5.E"] = table.rename(columns=lambda name: f"y = {name:g} cm" if isinstance(name, float) else name)
-        tables["T5.E"] = tables["T5.E"].rename(columns={"x": "x [cm]"})
+        columns = [name if isinstance(name, str) else f"y = {name:g} cm" for name in table]
+        tables["T5.E"] = table.set_axis(columns, axis=1).rename(columns={"x": "x [cm]"})
     names = {"skill2.last_change": "last change over the first [-]"}
     for blocks in (2, 3):
         names |= {

@@ -230,7 +230,7 @@ def tabulate(
                "max_error_y": "largest z_1y [mm]", "force_jump": "force jump [N]", "force_rate": "force rate [N/s]",
                "reference_speed": "reference speed [m/s]", "oscillation": "oscillation [mm]",
                "fraction": "x/x_d late in the contact [-]", "fraction_theory": "x/x_d, closed form [-]",
-               "final_cost": "cost rate, closed form [1/s]", "contact_cost": "cost of the contact [-]",
+               "final_cost": "cost rate at rest, closed form [1/m^2]", "contact_cost": "cost of the contact",
                "gain_x": "K_x [N/m]", "gain_s": "K_s [N]", "gain_error_x": "error of K_x [-]",
                "gain_error_s": "error of K_s [-]", "iterations": "iterations",
                "violated_at": "violated at [s]"}  # fmt: skip

@@ -179,7 +179,7 @@ def tabulate(
                "max_error_x": "largest z_1x [mm]", "max_error_y": "largest z_1y [mm]",
                "max_error_z": "largest z_1z [mm]", "bound_used": "share of the bound used", "gain_x": "K_x [N/m]",
                "gain_s": "K_s [N/m]", "gain_error": "error of the gain [-]", "iterations": "iterations",
-               "nodes_d": "nodes for M", "nodes_c": "nodes for C", "nodes_g": "nodes for G",
+               "nodes_d": "nodes for D", "nodes_c": "nodes for C", "nodes_g": "nodes for G",
                "peak_torque": "peak torque [N m]", "stopped_at": "stopped at [s]"}  # fmt: skip
     rows = [
         {"case": case, "stiffness [N/m]": config.cases[case].sponge.stiffness}
