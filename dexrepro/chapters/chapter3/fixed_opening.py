@@ -194,6 +194,7 @@ def _sensitivity(metrics: Mapping[str, Metrics]) -> pd.DataFrame:
             holds, held = (x is not None and x < bound for x in (value, before))
             rows.append(
                 {"variant": what, "claim": claim, "quantity": COLUMNS[metric], "bound": bound, "as shipped": before,
-                 "varied": value, "holds": "yes" if holds else "no", "verdict changes": "yes" if holds != held else "no"}
+                 "varied": value, "holds": "yes" if holds else "no",
+                 "verdict changes": "yes" if holds != held else "no"}
             )  # fmt: skip
     return pd.DataFrame(rows)

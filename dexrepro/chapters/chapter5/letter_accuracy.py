@@ -16,9 +16,9 @@ from dexrepro.primitives import DMP, Demonstration, GaussianKernels, TruncatedKe
 
 FIGURES = {
     "5.3": Figure(
-        "A handwritten A (dashed) and what DMP, DMP+ and IDMP make of it with the same random kernels, 5 above, 20 "
-        "below, for the draw with the median error of the DMP; as in the book. Right: mean squared error over draws of "
-        "the kernels (box: quartiles, whiskers: all draws).",
+        "An A by a synthetic hand (dashed) and what DMP, DMP+ and IDMP make of it with the same random kernels, 5 "
+        "above, 20 below, for the draw with the median error of the DMP; as in the book. Right: mean squared error "
+        "over draws of the kernels (box: quartiles, whiskers: all draws).",
         "With 5 and with 20 kernels the IDMP repeats the letter best, the DMP worst.",
     ),
     "5.A": Figure(
@@ -285,6 +285,7 @@ def _shares_table(metrics: Metrics, config: Config) -> pd.DataFrame:
         f"{best}.beats_dmp_plus_equal": "IDMP better than a DMP+ of equal size",
     }
     return pd.DataFrame(
-        {"comparison": text} | {f"{n} kernels": _scaled(metrics.get(f"n{n}.{key}"), 100.0) for n in config.kernels.counts}
+        {"comparison": text}
+        | {f"{n} kernels": _scaled(metrics.get(f"n{n}.{key}"), 100.0) for n in config.kernels.counts}
         for key, text in names.items()
     )

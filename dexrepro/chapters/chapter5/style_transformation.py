@@ -18,11 +18,10 @@ FIGURES = {
         "The five demonstrated letters a, z, l, k and w.",
     ),
     "5.6": Figure(
-        "The letter a (centre, blue frame; red in the book) turns into four other letters as shared random features "
-        "are added, five at a time, along the diagonals; black frames: demonstrations. Only the weights of the new "
-        "features are learned. "
-        "Right: distance to the target and to the initial letter over the number of added features, median of the "
-        "draws. The book shows the left part.",
+        "Synthetic hand: the letter a (centre, blue frame; red in the book) turns into four other letters as shared "
+        "random features are added, five at a time, along the diagonals; black frames: demonstrations. Only the "
+        "weights of the new features are learned. Right: distance to the target and to the initial letter over the "
+        "number of added features, median of the draws. The book shows the left part.",
         "The shapes leave the letter a gradually and are clearly distinct letters after 30 added features.",
     ),
     "5.B": Figure(

@@ -25,17 +25,18 @@ from dexrepro.robots.inverse_kinematics import solve
 
 FIGURES = {
     "6.3": Figure(
-        "The scene from above: two old boxes (orange), the new one (blue), the learned path (grey) and the "
+        "The simulated scene from above: two old boxes (orange), the new one (blue), the learned path (grey) and the "
         "constrained one. The book shows a photograph of the same arrangement.",
         "The learned path runs through the new box, the constrained one round it.",
     ),
     "6.4": Figure(
-        "Arm on the learned path at five instants (contacts off) and the smallest distance of the whole arm to each "
-        "box. The book shows photographs.",
+        "Simulated arm on the learned path at five instants (contacts off) and the smallest distance of the whole arm "
+        "to each box. The book shows photographs.",
         "On the learned path the arm enters the new box.",
     ),
     "6.5": Figure(
-        "Arm on the constrained path at five instants and the smallest distance of the whole arm to each box.",
+        "Simulated arm on the constrained path at five instants and the smallest distance of the whole arm to each "
+        "box.",
         "On the constrained path the whole arm passes all three boxes.",
     ),
 }

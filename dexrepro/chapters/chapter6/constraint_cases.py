@@ -23,10 +23,10 @@ from dexrepro.primitives.barrier import (
 FIGURES = {
     "6.A": Figure(
         "V^c relative to its start, and the scaled error, of the error dynamics under the consistent law for the four "
-        "cases of Conditions 6.1 and 6.2, and under (6.17) as printed. (b) has a linear axis: outside of a bound V falls "
-        "slowly, because the pull away from it fades. Ours; the book has no such figure.",
-        "The Lyapunov function falls in all four cases, outside by a few per cent; with the printed (6.17) it rises and "
-        "the error hits its bound after 0.33 s.",
+        "cases of Conditions 6.1 and 6.2, and under (6.17) as printed. (b) has a linear axis: outside of a bound V "
+        "falls slowly, because the pull away from it fades. Ours; the book has no such figure.",
+        "The Lyapunov function falls in all four cases, outside by a few per cent; with the printed (6.17) it rises "
+        "and the error hits its bound after 0.33 s.",
     ),
 }
 TABLES = {"T6.2": "alpha_2 and k_n of the four cases, and the worst dV^c/dt over random states"}

@@ -19,9 +19,10 @@ from dexrepro.primitives.dmp import DMP, Trajectory
 FIGURES = {
     "6.C": Figure(
         "(a) A straight reach with a disk to stay out of, used as the reference point of the outside constraint: end "
-        "positions are dots. The consistent law cancels the primitive, so with the disk as its reference it does "
-        "not move to the goal and only draws away from the disk. (b) Distance to the centre of a disk that crosses the path; the book's route, a tube "
-        "about a forecast detour, against the filter and the outside law. Ours; Sect. 6.5 describes moving obstacles.",
+        "positions are dots. The consistent law cancels the primitive, so with the disk as its reference it does not "
+        "move to the goal and only draws away from the disk. (b) Distance to the centre of a disk that crosses the "
+        "path; the book's route, a tube about a forecast detour, against the filter and the outside law. Ours; Sect. "
+        "6.5 describes moving obstacles.",
         "The outside law stops before the obstacle; the tube about a detour and the filter pass it.",
     ),
 }
@@ -174,7 +175,9 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
             run.time, run["distance"][:, 0], label=case.replace("moving_", "").replace("_", ", "), **style.LINES[line]
         )
     right.axhline(shown.radius, **style.LINES["reference"])
-    right.annotate("edge of the disk", (0.1, shown.radius), xytext=(0, -2), textcoords="offset points", fontsize=7, va="top")
+    right.annotate(
+        "edge of the disk", (0.1, shown.radius), xytext=(0, -2), textcoords="offset points", fontsize=7, va="top"
+    )
     right.set(xlabel="Time [s]", ylabel="Distance to the centre [cm]", ylim=(0, 9.5))
     right.legend(loc="upper center", fontsize=6.5, ncols=2)
     style.panel(left, "a", "still disk")

@@ -16,8 +16,8 @@ from dexrepro.experiment import Config, Metrics, Recording
 
 METHODS = {
     "soft": ("proposed, soft", "book"),
-    "abrupt": ("abrupt", "rival"),
-    "lqr": ("LQR, wrong model", "plain"),
+    "abrupt": ("abrupt", "extra3"),
+    "lqr": ("LQR, wrong model", "rival"),
     "lqr_true": ("LQR, true model", "extra1"),
     "hold": ("$K_0$ kept", "extra2"),
 }
@@ -147,7 +147,7 @@ def _draw_gain(recordings: Any, metrics: Any, config: Config) -> Any:
     start, end = metrics["soft"]["touched_at"], metrics["soft"]["left_at"]
     for index, (row, key, unit) in enumerate(zip(grid, "xs", ("N/m", "N"))):
         best = steps[f"optimal_{key}"].iloc[0]
-        for run, (name, line) in ((soft, ("$K_m$, proposed", "book")), (lqr, ("$K_l$, LQR, wrong model", "plain"))):
+        for run, (name, line) in ((soft, ("$K_m$, proposed", "book")), (lqr, ("$K_l$, LQR, wrong model", "rival"))):
             row[0].plot(run.time, run["gain"][:, index], label=name, **style.LINES[line])
         row[0].axhline(best, label="optimum of the true object", **style.LINES["reference"])
         row[0].set(ylabel=f"$K_{key}$ [{unit}]", xlim=(start, end))
