@@ -39,8 +39,9 @@ FIGURES = {
 TABLES = {"T3.G": "Scenes: grasp, what happened, errors"}
 FILM = Film(
     "chosen", "The simulated arm reaches through the opening, takes the object that the network chose and lifts it out "
-    "(first success; two walls of the box are left out).", 
-    Camera(target=(0.55, -0.2, 0.2), distance=1.65, yaw=40.0, pitch=-25.0), "raised", "Object lifted by [mm]", scale=1e3,
+    "(first success; two walls of the box are left out).",
+    Camera(target=(0.55, -0.2, 0.2), distance=1.65, yaw=40.0, pitch=-25.0), "raised", "Object lifted by [mm]",
+    scale=1e3,
 )  # fmt: skip
 
 
@@ -54,8 +55,10 @@ def scene(config: Config) -> World:
 def stage(world: World, recording: Recording, config: Config) -> Recording:
     """The objects of the attempt that is shown, and the box cut open."""
     items = [
-        Item(row.x, row.y, row.yaw, (row.width, row.depth, row.height), bool(row.round), (row.r, row.g, row.b, 1.0))
-        for row in recording.frames["items"].itertuples()
+        Item(
+            r["x"], r["y"], r["yaw"], (r["width"], r["depth"], r["height"]), bool(r["round"]), (*map(r.get, "RGB"), 1.0)
+        )
+        for r in recording.frames["items"].to_dict("records")
     ]
     place_items(world, _floor(config), items)
     return cutaway(world, recording, config)
@@ -200,14 +203,14 @@ def _attempt(
     }
 
 
-def _keep(recording: Recording, run: Recording, items: list[Item], names: list[str], held: int, floor: float) -> None:
-    """What the film needs of one attempt: joint angles, places and looks of the items, height of the held one [m]."""
+def _keep(recording: Recording, run: Recording, items: list[Item], names: list[str], held: int) -> None:
+    """What the film needs of one attempt: joint angles, places and looks of the items, how far one is lifted [m]."""
     channels = ("time", f"{ARM}.position", *(f"{name}.pose" for name in names))
     recording.series = {name: run[name] for name in channels}
     height = run[f"{names[held]}.pose"][:, 2]
     recording.series["raised"] = height - height.min()
     looks = [(item.x, item.y, item.yaw, *item.size, item.round, *item.colour[:3]) for item in items]
-    columns = ["x", "y", "yaw", "width", "depth", "height", "round", "r", "g", "b"]
+    columns = ["x", "y", "yaw", "width", "depth", "height", "round", "R", "G", "B"]
     recording.frames["items"] = pd.DataFrame(looks, columns=columns)
 
 
