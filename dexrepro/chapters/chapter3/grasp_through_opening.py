@@ -56,7 +56,12 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
     """The objects of the attempt that is shown, and the box cut open."""
     items = [
         Item(
-            r["x"], r["y"], r["yaw"], (r["width"], r["depth"], r["height"]), bool(r["round"]), (*map(r.get, "RGB"), 1.0)
+            r["x"],
+            r["y"],
+            r["yaw"],
+            (r["width"], r["depth"], r["height"]),
+            bool(r["round"]),
+            (r["R"], r["G"], r["B"], 1.0),
         )
         for r in recording.frames["items"].to_dict("records")
     ]

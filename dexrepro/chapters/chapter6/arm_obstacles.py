@@ -44,7 +44,7 @@ TABLES = {"T6.Sc": "Variants of the detour, the law and the contacts on the arm"
 RATE = 100.0
 BOXES = ("first", "second", "new")
 COLOURS = {"first": (0.95, 0.62, 0.20, 1.0), "second": (0.95, 0.62, 0.20, 1.0), "new": (0.20, 0.50, 0.80, 1.0)}
-TOP = Camera(target=(0.47, -0.25, 0.0), distance=1.25, yaw=0.0, pitch=-89.99, field_of_view=45.0)
+TOP = Camera(target=(0.43, -0.25, 0.0), distance=1.27, yaw=0.0, pitch=-89.99, field_of_view=45.0)
 SIDE = Camera(target=(0.42, -0.3, 0.16), distance=1.4, yaw=40.0, pitch=-35.0, field_of_view=45.0)
 FILM = Film(
     "constrained", "The constrained path takes the whole arm round the new, blue box.",
