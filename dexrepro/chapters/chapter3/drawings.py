@@ -14,7 +14,7 @@ from dexrepro.robots.kinematics import forward
 
 def describe(config: Config) -> str:
     """One case in a few words."""
-    parts = [f"{config.task} task", f"mass error {100 * config.model.mass_error:g} %"]
+    parts = [f"{config.task.replace('_', ' ')} task", f"mass error {100 * config.model.mass_error:g} %"]
     if config.straight:
         parts.append("straight to the target")
     parts.append(f"K_R {config.null_space.stiffness:g} N/m" if config.null_space.enabled else "no null-space torque")

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter3 import drawings, reach
-from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
+from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, headed, reach_metrics
 from dexrepro.chapters.chapter3.scene import CAMERA, FILMED, Touching, build, cutaway
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 
@@ -161,7 +161,7 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    return {"T3.A": pd.DataFrame(rows).rename(columns=COLUMNS), "T3.S": _sensitivity(metrics)}
+    return {"T3.A": headed(rows), "T3.S": _sensitivity(metrics)}
 
 
 # Variant, what differs, claim, metric, bound that the claim puts on it [m] and the case it departs from.

@@ -278,7 +278,8 @@ def tabulate(
     for case, recording in recordings.items():
         table = recording.frames["scenes"].copy()
         table.insert(0, "case", case)
+        table["opening_error"] *= 1e3
         tables.append(table)
-    names = {"opening_error": "opening error [m]", "x": "x [m]", "y": "y [m]", "angle": "angle [rad]",
+    names = {"opening_error": "opening error [mm]", "x": "x [m]", "y": "y [m]", "angle": "angle [rad]",
              "truly": "true class", "possible": "graspable candidates", "contact_time": "contact [s]"}  # fmt: skip
     return {"T3.G": pd.concat(tables).rename(columns=names)} if tables else {}

@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import drawings, reach
-from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
+from dexrepro.chapters.chapter3.measures import add_distances, headed, reach_metrics
 from dexrepro.chapters.chapter3.scene import ARM, FILMED, Touching, build, cutaway
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.world import Camera, World
@@ -177,4 +177,4 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    return {"T3.D": pd.DataFrame(rows).rename(columns=COLUMNS)}
+    return {"T3.D": headed(rows)}
