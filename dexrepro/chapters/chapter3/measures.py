@@ -78,8 +78,9 @@ COLUMNS = {
 def headed(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     """A table of metrics under the names of :data:`COLUMNS`, lengths in mm."""
     table = pd.DataFrame(rows).rename(columns=COLUMNS)
-    lengths = [name for name in table if name.endswith(" [m]")]
-    table[lengths] = 1e3 * table[lengths].astype(float)
+    lengths = [name for name in map(str, table) if name.endswith(" [m]")]
+    for name in lengths:
+        table[name] = 1e3 * table[name].astype(float)
     return table.rename(columns={name: name.replace(" [m]", " [mm]") for name in lengths})
 
 
