@@ -24,7 +24,8 @@ def run(chapter: int | str, overrides: list[str] | None = None, **settings: Any)
     example ``["movement_estimation.stiffness=[25,60]"]``. Raises RuntimeError with one sentence a failed case, and
     dexrepro.config.InputError for input that cannot be used.
     """
-    from dexrepro.runner import plan_chapter, run_plans
+    from dexrepro.plan import plan_chapter
+    from dexrepro.runner import run_plans
     from dexrepro.storage import Result
 
     workers, force = settings.pop("workers", None), settings.pop("force", False)

@@ -14,8 +14,9 @@ from typing import Any
 
 from dexrepro import chapters
 from dexrepro.config import InputError
+from dexrepro.plan import plan_chapter
 from dexrepro.progress import Progress
-from dexrepro.runner import plan_chapter, run_plans
+from dexrepro.runner import run_plans
 from dexrepro.storage import read_json, write_json
 
 PERTURBATIONS = (1e-9, -1e-9)  # rad, or share of the input data's range; one may take the same branch by luck

@@ -159,8 +159,9 @@ def _sentences(outcome: Any) -> list[str]:
 
 def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     from dexrepro.config import compose_chapter
+    from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
-    from dexrepro.runner import Outcome, plan_chapter, run_plans
+    from dexrepro.runner import Outcome, run_plans
 
     numbers, rest = chapters_of(overrides, extra_dir)
     plans: list[Any] = []

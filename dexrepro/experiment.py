@@ -186,7 +186,10 @@ def _operand(value: str | float, factor: float) -> str:
 
 
 def less(a: str, b: str | float, factor: float = 1.0) -> Predicate:
-    """a < factor * b, where b is a metric or a number. Margin (factor b - a) / max(|a|, |factor b|)."""
+    """a < factor * b, where b is a metric or a number. Margin (factor b - a) / max(|a|, |factor b|).
+
+    Against a bound of 0 the margin is 1 or -1, whatever a: it then tells the verdict alone.
+    """
     if isinstance(b, str):
         return Predicate(f"{a} < {_operand(b, factor)}", (a, b), lambda v: _relative_gap(v[0], factor * v[1]))
     bound = factor * b
@@ -194,7 +197,7 @@ def less(a: str, b: str | float, factor: float = 1.0) -> Predicate:
 
 
 def greater(a: str, b: str | float, factor: float = 1.0) -> Predicate:
-    """a > factor * b, where b is a metric or a number. Margin (a - factor b) / max(|a|, |factor b|)."""
+    """a > factor * b, where b is a metric or a number. Margin (a - factor b) / max(|a|, |factor b|); see ``less``."""
     if isinstance(b, str):
         return Predicate(f"{a} > {_operand(b, factor)}", (a, b), lambda v: _relative_gap(factor * v[1], v[0]))
     bound = factor * b

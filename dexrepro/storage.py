@@ -114,6 +114,11 @@ def finite(data: Any) -> Any:
     return data
 
 
+def digest_of(data: Any) -> str:
+    """A hash that changes with any value in the data."""
+    return hashlib.sha1(json.dumps(finite(data), sort_keys=True, default=str).encode()).hexdigest()
+
+
 # ------------------------------------------------------------------------------------------------------ recordings
 
 

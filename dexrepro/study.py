@@ -1,8 +1,10 @@
 """How fragile is a claim? Vary what the book does not print, within the ranges declared in conf/, and count.
 
 A sample draws every ranged parameter of an experiment, and the seed, from its own generator; all claims of the
-experiment share it. Samples are kept one a line, so that a study goes on where it was stopped. The same study may be
-started any number of times, on any machine that shares the results folder: its processes share the samples.
+experiment share it. Samples are kept one a line beside the summary, so that a study goes on where it was stopped, here
+or in another checkout; those of another configuration, or of claims that said something else, no longer count. The
+same study may be started any number of times, on any machine that shares the results folder: its processes share the
+samples.
 """
 
 from __future__ import annotations
@@ -34,7 +36,7 @@ from dexrepro.config import (
 from dexrepro.experiment import Claim, Config, Metrics
 from dexrepro.pool import pool
 from dexrepro.runner import flat, generator, live, summarise
-from dexrepro.storage import claimed, finite, locked, read_json, write_json
+from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json
 
 
 def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list[str]:
@@ -98,7 +100,6 @@ def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float], d
 
 def evaluate(chapter: str, experiment: str, index: int) -> dict[str, Any]:
     """Simulate one sample and return its values and the margin of every claim (None where a case of it failed)."""
-    start = time.perf_counter()
     values, block = draw(chapter, experiment, index)
     cases = block["cases"]
     seed = int(values["seed"])
@@ -117,8 +118,22 @@ def evaluate(chapter: str, experiment: str, index: int) -> dict[str, Any]:
         summarise(definition, metrics, Config.of(block))
     measured = finite(flat(experiment, metrics))
     margins = {claim.id: claim.predicate.margin(measured) for claim in claims if claim.predicate}
-    wall = time.perf_counter() - start
-    return {"index": index, "values": values, "margins": margins, "error": "; ".join(errors) or None, "wall": wall}
+    return {
+        "index": index,
+        "digest": _digest(claims, block, seed),
+        "values": _rounded(values),
+        "margins": _rounded(margins),
+        "error": "; ".join(errors) or None,
+    }
+
+
+def _digest(claims: Sequence[Claim], block: Mapping[str, Any], seed: float) -> str:
+    """Changes with the configuration of a sample and with what the claims say."""
+    return digest_of([block, seed, {c.id: c.predicate.text for c in claims if c.predicate}])[:10]
+
+
+def _rounded(numbers: Mapping[str, float | None]) -> dict[str, float | None]:
+    return {key: value if value is None else float(f"{value:.6g}") for key, value in numbers.items()}
 
 
 def _cases_of(claims: Sequence[Claim], cases: Mapping[str, Any]) -> list[str]:
@@ -138,33 +153,57 @@ def run(
     workers: int | None = None,
     hours: float | None = None,
 ) -> Path:
-    """Evaluate what is missing of ``samples`` samples, store the summary and return its path."""
-    lines = results / "study" / f"{experiment}.jsonl"
-    lines.parent.mkdir(parents=True, exist_ok=True)
-    done = {entry["index"] for entry in _read(lines)}
+    """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path."""
+    target = summary_file(experiment, results)
+    for folder in (target.parent, _locks(results)):
+        folder.mkdir(parents=True, exist_ok=True)
+    done = _kept(chapter, experiment, results)
     missing = [index for index in range(samples) if index not in done]
     deadline = time.time() + 3600 * hours if hours else float("inf")
     with pool(workers) as submit:
-        for future in as_completed([submit(contribute, chapter, experiment, i, lines, deadline) for i in missing]):
+        for future in as_completed([submit(contribute, chapter, experiment, i, results, deadline) for i in missing]):
             future.result()
-    target = summary_file(experiment, results)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    with locked(lines.parent):  # who ends last sees every sample
-        entries = [entry for entry in _read(lines) if entry["index"] < samples]
-        write_json(target, summary(chapter, experiment, entries))
+    with locked(_locks(results)):  # who ends last sees every sample
+        entries = _kept(chapter, experiment, results).values()
+        _lines(target).write_text("".join(map(_line, entries)))
+        write_json(target, summary(chapter, experiment, list(entries)))
     return target
 
 
-def contribute(chapter: str, experiment: str, index: int, lines: Path, deadline: float) -> None:
+def contribute(chapter: str, experiment: str, index: int, results: Path, deadline: float) -> None:
     """Evaluate one sample and add its line, unless another process does or has done so, or it is too late."""
-    with claimed(lines.parent, f"{experiment}.{index}", wait=False) as mine:
-        if not mine or time.time() > deadline or any(entry["index"] == index for entry in _read(lines)):
+    with claimed(_locks(results), f"{experiment}.{index}", wait=False) as mine:
+        if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index):
             return
-        line = json.dumps(finite(evaluate(chapter, experiment, index))) + "\n"
-        with locked(lines.parent), open(lines, "a+b") as file:
+        line = _line(finite(evaluate(chapter, experiment, index)))
+        with locked(_locks(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
             file.seek(max(file.tell() - 1, 0))
             cut_short = file.read(1) not in (b"", b"\n")
             file.write(b"\n" * cut_short + line.encode())
+
+
+def _kept(chapter: str, experiment: str, results: Path, only: int | None = None) -> dict[int, dict[str, Any]]:
+    """The samples there are, shipped or made here, of the present configuration and claims, in the order of index."""
+    found, claims = {}, chapters.load(chapter).claims_of(experiment)
+    for folder in (baseline_dir(), results / "baselines"):
+        for entry in _read(_lines(folder / "study" / f"{experiment}.json")):
+            if only in (None, entry["index"]):
+                values, block = draw(chapter, experiment, entry["index"])
+                if entry["digest"] == _digest(claims, block, values["seed"]):
+                    found[entry["index"]] = entry
+    return dict(sorted(found.items()))
+
+
+def _locks(results: Path) -> Path:
+    return results / "study"
+
+
+def _lines(summary: Path) -> Path:
+    return summary.with_suffix(".jsonl")
+
+
+def _line(entry: Mapping[str, Any]) -> str:
+    return json.dumps(entry) + "\n"
 
 
 def summary_file(experiment: str, results: Path) -> Path:

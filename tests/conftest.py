@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import dexrepro
-from dexrepro import chapters, config, runner
+from dexrepro import chapters, config, plan
 
 ROOT = Path(dexrepro.__file__).parent.parent
 TOY = Path(__file__).parent / "toy"
@@ -23,10 +23,10 @@ def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     monkeypatch.setattr(config, "config_dir", lambda: TOY / "conf")
     monkeypatch.setattr(chapters, "__path__", [str(TOY)])
     monkeypatch.chdir(tmp_path)
-    for function in (chapters.numbers, chapters.load, runner.source_digest):
+    for function in (chapters.numbers, chapters.load, plan.source_digest):
         function.cache_clear()
     yield tmp_path
-    for function in (chapters.numbers, chapters.load, runner.source_digest):
+    for function in (chapters.numbers, chapters.load, plan.source_digest):
         function.cache_clear()
     for name in [name for name in sys.modules if name.startswith("dexrepro.chapters.chapter90")]:
         del sys.modules[name]

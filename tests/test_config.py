@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+
 import pytest
 
 from dexrepro import chapters
@@ -96,6 +98,17 @@ def test_the_parts_of_a_chapter_fit_together(chapter: str) -> None:
     for claim in loaded.claims:
         assert {name.partition(".")[0] for name in claim.metrics} <= {claim.experiment}, claim.id
         assert claim.experiment in names | {""}, claim.id
+
+
+@pytest.mark.parametrize("chapter", chapters.numbers())
+def test_every_switch_of_an_erratum_is_an_override_that_composes(chapter: str) -> None:
+    for erratum in chapters.load(chapter).errata:
+        if erratum.switch:
+            overrides = shlex.split(erratum.switch)
+            composed = compose_chapter(chapter, overrides)
+            experiment = overrides[0].lstrip("+").partition(".")[0]
+            if experiment != "shared":
+                assert experiment_cases(composed, experiment), erratum.id
 
 
 def test_experiment_names_are_unique_in_the_book() -> None:

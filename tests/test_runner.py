@@ -11,7 +11,8 @@ import pytest
 
 import dexrepro
 from dexrepro.config import InputError
-from dexrepro.runner import KEPT, complete, generator, own_digest, plan_chapter, run_plans
+from dexrepro.plan import own_digest, plan_chapter
+from dexrepro.runner import KEPT, complete, generator, run_plans
 from dexrepro.storage import Result
 
 

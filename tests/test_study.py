@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,6 +11,7 @@ import pytest
 from dexrepro import study
 from dexrepro.config import InputError
 from dexrepro.experiment import Claim, less
+from dexrepro.pool import _submit_here
 from dexrepro.storage import read_json
 
 RESULTS = Path("results")
@@ -64,12 +67,34 @@ def test_a_study_counts_how_often_each_claim_holds_and_what_it_follows(folder: P
 
 def test_a_study_resumes_and_survives_a_line_cut_short(folder: Path) -> None:
     study.run("90", "decay", 4, RESULTS, workers=1)
-    lines = RESULTS / "study/decay.jsonl"
+    lines = RESULTS / "baselines/study/decay.jsonl"
     kept = lines.read_text().splitlines(keepends=True)
-    lines.write_text("".join(kept[:3]) + kept[3][:20] + "\n")
+    lines.write_text("".join(kept[:3]) + kept[3][:20])
     study.run("90", "decay", 6, RESULTS, workers=1)
-    assert lines.read_text().startswith("".join(kept[:3]))
-    assert sorted(entry["index"] for entry in study._read(lines)) == list(range(6))
+    assert lines.read_text().startswith("".join(kept[:4]))
+    assert [entry["index"] for entry in study._read(lines)] == list(range(6))
+
+
+def test_a_study_asked_for_less_forgets_nothing(folder: Path) -> None:
+    study.run("90", "decay", 5, RESULTS, workers=1)
+    assert read_json(study.run("90", "decay", 2, RESULTS, workers=1))["samples"] == 5
+
+
+def test_shipped_samples_count_and_those_of_another_configuration_do_not(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study.run("90", "decay", 3, RESULTS, workers=1)
+    (RESULTS / "baselines").rename(folder / "shipped")
+    evaluated: list[int] = []
+    evaluate = study.evaluate
+    monkeypatch.setattr(study, "pool", lambda workers: nullcontext(_submit_here))
+    monkeypatch.setattr(study, "evaluate", lambda *which: evaluated.append(which[-1]) or evaluate(*which))
+    study.run("90", "decay", 5, RESULTS)
+    assert evaluated == [3, 4]
+    narrower = {key: replace(origin, high=1.0) for key, origin in study.parameters("90", "decay").items()}
+    monkeypatch.setattr(study, "parameters", lambda *_: narrower)
+    assert read_json(study.run("90", "decay", 2, RESULTS))["samples"] == 2
+    assert evaluated[2:] == [0, 1]
 
 
 def test_a_study_made_again_takes_the_place_of_the_one_shipped(folder: Path) -> None:

@@ -22,6 +22,16 @@ def consistent_inverse(mass: Array, jacobian: Array, damping: float = 1e-6) -> t
     return inverse, np.eye(len(mass)) - jacobian.T @ inverse.T
 
 
+def consistent_damping(damping: Array, jacobian: Array, inverse: Array, projector: Array) -> Array:
+    """Damping (n, n) that acts on null-space motion through the projector, and on the task's motion as before.
+
+    A torque -damping * dq brakes the null-space motion too, and as it is not dynamically consistent the task feels
+    that. damping: (n,) [N m s/rad], one a joint; inverse, projector: of :func:`consistent_inverse` for ``jacobian``.
+    """
+    eye = np.eye(len(damping))
+    return np.diag(damping) - (eye - projector) @ (damping[:, None] * (eye - inverse @ jacobian))
+
+
 def damped_inverse(jacobian: Array, damping: float) -> Array:
     """J^T (J J^T + damping I)^-1, shape (n, m)."""
     square = jacobian @ jacobian.T

@@ -42,7 +42,8 @@ def printed_centre_force(centre: Array, tip: Array, wrist: Array, stiffness: flo
     """F_R = K_R R with R exactly as printed in Eq. (3.31), (3,) [N]: the scale multiplies the whole difference.
 
     tip: end joint P_E, wrist: joint before it P_EA [m]. With arrows from the first letter to the second the
-    difference is that from P_R to P_EA, so the force is not across the link.
+    difference is that from P_R to P_EA, so the force is not across the link and points away from the centre; with the
+    opposite arrows, under which the corrected form pulls, this one pulls as well.
     """
     to_tip, link = tip - centre, tip - wrist
     reach, length = float(np.linalg.norm(to_tip)), float(np.linalg.norm(link))

@@ -125,3 +125,24 @@ def test_gravity_pd_holds_the_arm_still_with_an_exact_model():
     np.testing.assert_allclose(torque, Model(PLANT).gravity(q))
     stiffer = tracking(q - 0.1, np.zeros(2), (q, np.zeros(2), np.zeros(2)))
     np.testing.assert_allclose(stiffer - torque, 0.1)
+
+
+def test_the_printed_robust_term_drives_every_weight_upward_whatever_the_error():
+    for side in (1.0, -1.0):
+        learner = network(gain=0.0)
+        tracking = law(learner=learner, robust_rate=1.0)
+        q, dq, ddq = desired(0.0)
+        tracking(q - side * 0.1, dq, (q, dq, ddq))
+        delta = tracking.velocity_error
+        np.testing.assert_allclose(learner.weights[0], STEP * np.tanh(delta / 0.1) * delta)
+        assert (learner.weights > 0).all()
+
+
+def test_the_printed_gain_has_the_claimed_rate_only_while_the_bound_shrinks_fast_enough():
+    def rate(decay):
+        tracking = law(virtual_gain="printed", convergence=10.0)
+        tracking.bound = PerformanceBound(0.15, 1e-9, decay)
+        _, gain, _ = tracking._virtual_gain()
+        return -(gain + decay)  # -(L - v'/v), which (5.39) wants to be k_c at least
+
+    assert rate(2.0) > 10.0 > rate(1.0)

@@ -38,6 +38,18 @@ def test_ramp_error_decays_with_the_weights_time_constant():
     assert abs(error[-1]) < 0.1 * 0.015 / 0.5
 
 
+def test_a_swinging_partner_leaves_the_force_error_of_the_linear_closed_loop():
+    """Adapting weights act as an integral: e = k s^2 (s + L) x / ((s + L) (s^2 + k a s + k N b) + k N a), N = Z.Z."""
+    law, stiffness, swing, rate, errors, z = proposed(), 50.0, 0.01, 0.5, [], 0.0
+    law.reset(0.0)
+    for k in range(round(60.0 / DT)):
+        errors.append(stiffness * (swing * np.sin(rate * k * DT) - z) - DESIRED)
+        z = law(z, errors[-1] + DESIRED)
+    n, s = 1.0 + 3 * (DESIRED / stiffness) ** 2, 1j * rate
+    loop = (s + 2.0) * (s**2 + stiffness * 0.11 * s + stiffness * n * 1e-4) + stiffness * n * 0.11
+    assert max(errors[-15000:]) == pytest.approx(abs(stiffness * swing * s**2 * (s + 2.0) / loop), rel=0.03)
+
+
 def test_without_weights_a_ramp_leaves_speed_over_gain():
     error = hold(proposed(adapt=False), 10.0, speed=0.015)[-1] - DESIRED
     assert error == pytest.approx(0.015 / 0.11, rel=0.01)

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dexrepro.control.null_space import consistent_inverse, damped_inverse
+from dexrepro.control.null_space import consistent_damping, consistent_inverse, damped_inverse
 
 
 @given(st.integers(0, 10_000), st.sampled_from([3, 5, 6]))
@@ -16,6 +16,18 @@ def test_null_space_torque_does_not_accelerate_the_task(seed, size):
     assert jacobian @ inverse == pytest.approx(np.eye(size), abs=1e-7)
     assert projector @ projector == pytest.approx(projector, abs=1e-6)
     assert jacobian @ np.linalg.solve(mass, projector @ rng.standard_normal(7)) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_consistent_damping_of_null_space_motion_does_not_accelerate_the_task_as_plain_damping_does():
+    rng = np.random.default_rng(2)
+    root, jacobian, damping = rng.standard_normal((7, 7)), rng.standard_normal((3, 7)), rng.uniform(1, 20, 7)
+    mass = root @ root.T + np.eye(7)
+    inverse, projector = consistent_inverse(mass, jacobian, damping=0.0)
+    matrix = consistent_damping(damping, jacobian, inverse, projector)
+    task, null = inverse @ rng.standard_normal(3), (np.eye(7) - inverse @ jacobian) @ rng.standard_normal(7)
+    assert matrix @ task == pytest.approx(damping * task)
+    assert jacobian @ np.linalg.solve(mass, matrix @ null) == pytest.approx(0.0, abs=1e-8)
+    assert np.linalg.norm(jacobian @ np.linalg.solve(mass, damping * null)) > 0.1
 
 
 def test_damped_inverse_tends_to_the_right_inverse():

@@ -14,8 +14,9 @@ import pandas as pd
 import pytest
 from PIL import Image
 
+from dexrepro.plan import plan_chapter
 from dexrepro.report import equations, page
-from dexrepro.runner import plan_chapter, run_plans
+from dexrepro.runner import run_plans
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 

@@ -8,8 +8,9 @@ import pytest
 from rich.console import Console
 
 from dexrepro import cli, study
+from dexrepro.plan import plan_chapter
 from dexrepro.report import page, studies
-from dexrepro.runner import plan_chapter, run_plans
+from dexrepro.runner import run_plans
 from dexrepro.storage import write_json
 
 

@@ -58,9 +58,13 @@ CLAIMS = (
         "C1.04",
         "1.10",
         "It depends little on DFR's motion and on a stiffness of 40 to 60 N/m.",
-        less(f"{TRACKING}.spread", 0.1),
+        every(
+            less(f"{TRACKING}.spread", 0.1),
+            *(less(f"{TRACKING}.{case}_proposed.rmse_late", 0.5) for case in CASES),
+        ),
         where="1.5.1",
-        note="Spread of the whole-run error over the three cases.",
+        note="Spread of the whole-run error, which the common start dominates, and an error after 5 s below 5 % of the "
+        "desired force. That late error does depend on motion and stiffness: 0.03, 0.11 and 0.23 N.",
     ),
     Claim(
         "C1.05a",
@@ -73,9 +77,12 @@ CLAIMS = (
         "C1.05b",
         "1.10",
         "The force error vanishes also while stiffness and velocity vary.",
-        every(*(less(f"{TRACKING}.{case}_proposed.largest_late", 0.1) for case in ("c2", "c3"))),
+        every(*(less(f"{TRACKING}.{case}_proposed.rmse_late", 0.1) for case in ("c2", "c3"))),
         where="1.4",
-        note="Bounded at a few tenths of a newton: constant weights cannot predict a varying contact position.",
+        note="The bound of C1.05a. Constant weights that predict a smooth contact position exist (a difference "
+        "quotient: thousands a second), but the weights stay below 0.1 and act as an integral of the force error of "
+        "gain alpha N / L with N = Z.Z. What such a proportional-integral law leaves is the error seen (0.09 and 0.21 "
+        "N).",
     ),
     Claim(
         "C1.06a",
@@ -166,6 +173,7 @@ CLAIMS = (
             less("relative_pose.default.scale_steps_down", 0.5),
         ),
         where="Eq. (1.45)",
+        by_construction="It is Eq. (1.45), evaluated.",
     ),
     Claim(
         "C1.15b",
@@ -185,7 +193,7 @@ CLAIMS = (
         greater("dartboard.book.wins_median", 6.5),
         where="1.5.2.1",
         note="Median over ten panels of new synthetic operators; depends on the ring width and on the constant scale "
-        "of the general mapping, and turns round for a scale of 2 or less (T1.D).",
+        "of the general mapping, and turns round for a scale of 3 or less (T1.D).",
     ),
     Claim(
         "C1.16b",
@@ -193,7 +201,8 @@ CLAIMS = (
         "Nobody scores lower with the proposed mapping (12 higher, 1 equal).",
         less("dartboard.book.losses", 0.5),
         where="1.5.2.1",
-        note="Operators whose tremor alone is faster than v_min raise the scale while they aim and score lower.",
+        note="Two of the thirteen shown, 16 of the 130 of all panels. Eight of the nine whose tremor alone is faster "
+        "than v_min are among them: it raises the scale while they aim.",
     ),
     Claim(
         "C1.17",
@@ -217,6 +226,8 @@ CLAIMS = (
         "AFR follows the moving object and does not touch it before DFR approaches.",
         every(less(f"{READY}.adjustable.lag_most", 0.05), greater(f"{READY}.adjustable.clearance", 0.03)),
         where="1.5.2.1",
+        note="Both bounds are ours, and with other gains of the field, none of which is printed, it mostly exceeds one "
+        "of them (study).",
     ),
     Claim(
         "C1.19",
@@ -281,6 +292,8 @@ CLAIMS = (
         "Passive impedance holds better than a fixed distance.",
         _holding("rmse", "passive", "fixed"),
         where="1.5.2.2",
+        note="The printed impedance is close to its stability limit: where object and arms vary it loses more often "
+        "than it wins (study).",
     ),
     Claim(
         "C1.24a",
@@ -296,15 +309,17 @@ CLAIMS = (
         "with negligible overshoot.",
         every(*(less(f"{HOLDING}.{trial}_proposed.overshoot", 0.1) for trial in TRIALS)),
         where="1.5.2.2",
+        note="Negligible: within the band of C1.24a; 7 to 8 % here.",
     ),
     Claim(
         "C1.25",
         "1.18",
         "The fast rise shows that the adaptation law converges fast.",
-        greater("sensitivity.carrying.weights_matter", 0.05),
+        greater("sensitivity.carrying.rise_gain", 0.1),
         where="1.5.2.2",
-        note="At these gains the weights do nothing within the task: without them the force error is the same to a few "
-        "hundredths of a newton at every gain. The rise is the proportional term's.",
+        note="Share by which the weights shorten the rise to 95 % of the force, at a gain of 0.24: nothing. Nor do "
+        "they change the force error after the 8th second by more than a hundredth of a newton. The rise is the "
+        "proportional term's; only at gains below 0.05 do the weights shorten it, by a tenth.",
     ),
     Claim(
         "C1.26",
@@ -371,9 +386,10 @@ CLAIMS = (
     Claim(
         "C1.33",
         "1.18",
-        "The win survives a tuned damping of the passive impedance.",
+        "The win survives tuning: both laws with the best of twelve gains.",
         less(f"{HOLDING}.t1_proposed_tuned.rmse", f"{HOLDING}.t1_passive_tuned.rmse"),
         source="ours",
+        note="Gains tuned on the holding line without arms (T1.H), compared on the first trajectory of the arms.",
     ),
     Claim(
         "C1.34",

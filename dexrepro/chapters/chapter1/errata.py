@@ -81,9 +81,9 @@ ERRATA = (
     Erratum(
         "E1.11",
         "(1.30)",
-        "error",
-        "Consequence of E1.10: the sign of the beta term; invisible at the printed beta of 1e-4.",
-        "As E1.10.",
+        "reading",
+        "The sign of the beta term belongs to the same definition of e_f; part of E1.10, not an error of its own, and "
+        "invisible at the printed beta of 1e-4.",
     ),
     Erratum(
         "E1.12",
@@ -98,7 +98,8 @@ ERRATA = (
         "E1.13",
         "(1.35), (1.38)-(1.40)",
         "error",
-        "W~ = W - W^ contradicts the signs of (1.38) and (1.39); the dot on W~ in (1.39) and (1.40) is spurious.",
+        "W~ = W - W^ contradicts the signs of (1.38) and (1.39); the dot on W~ in (1.39) and (1.40) is spurious, "
+        "possibly by text extraction.",
         "W~ = W^ - W",
     ),
     Erratum(

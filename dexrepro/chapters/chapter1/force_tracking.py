@@ -1,7 +1,7 @@
 """Three holding laws on two planar arms with an object whose stiffness varies, Section 1.5.1.
 
 The leader's motion is unknown to the follower; both arms are torque-controlled in the World, the object is a massless
-spring that never pulls. Cases c1, c2, c3 are the three columns of Fig. 1.10.
+spring that never pulls, and its force is felt without noise. Cases c1, c2, c3 are the three columns of Fig. 1.10.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ FIGURES = {
     "1.10": Figure(
         "Simulated torque-controlled arms. Columns: the book's three cases. Rows: force error; the same after "
         "5 s; the contact position x_d that gives the desired force, the reference x_r and the stiffness; the Lyapunov "
-        "function of Eq. (1.34) along the run, which the book does not draw (constant weights W* exist in case 1 "
-        "alone, elsewhere the best constant ones are used).",
+        "function of Eq. (1.34) along the run, which the book does not draw (W*: exact and small in case 1, elsewhere "
+        "the best constant weights of moderate size).",
         "The proposed law has the smallest force error of three controllers in all three cases.",
     ),
 }
@@ -117,7 +117,11 @@ def simulate(config: Config, rng: Any) -> Recording:
 
 
 def lyapunov(recording: Recording, series: dict[str, Any], config: Config) -> Any:
-    """V of Eq. (1.34), (1.35) along a run with perfect tracking (V_3 = 0) and the best constant weights W*."""
+    """V of Eq. (1.34), (1.35) along a run with perfect tracking (V_3 = 0) and constant weights W*.
+
+    Where the contact position is no ramp, W* is the least-squares fit without the directions in which the nearly equal
+    lags could only be told apart by weights of a thousand a second (a difference quotient, which would fit anything).
+    """
     z, contact, dt = series["displacement"], series["contact"], RECORDED * config.control_period
     rate = np.gradient(contact, dt)
     lags = recording["weights"].shape[1] - 1

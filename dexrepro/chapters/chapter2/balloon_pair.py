@@ -98,7 +98,7 @@ def run(config: Config, rng: Any, path: Callable[[float], Array]) -> Recording:
 
 
 class GripperServo:
-    """Keeps the gripper's orientation and takes it to a place: inverse kinematics before computed torque.
+    """Keeps the gripper's orientation and takes it to a place: inverse kinematics before computed torque (exact model).
 
     Joint references are solved every 4 ms and torques every 2 ms, far faster than the joints' 30 rad/s.
     """
@@ -138,7 +138,10 @@ class GripperServo:
 
 
 class Leader:
-    """The directly teleoperated follower, Eq. (2.1): the hand's displacement, turned by R and scaled by s."""
+    """The directly teleoperated follower, Eq. (2.1): the hand's displacement, turned by R and scaled by s.
+
+    The operator watches the gripper, so it is the gripper's ``path`` that is given and the hand's that follows from it.
+    """
 
     def __init__(
         self, config: Config, arm: Arm, path: Callable[[float], Array], elapsed: Callable[[float], float]

@@ -43,9 +43,10 @@ ERRATA = (
         "(2.12)",
         "gap",
         "While the coefficients adapt, a_1 + 2 a_2 t is not the rate of the estimate: the coefficients' own rates are "
-        "dropped, and with time counted from the start these carry nearly all of the movement. Im then equals NoIm.",
+        "dropped, and with time counted from the start these carry nearly all of the movement. Im then equals NoIm "
+        "(with rates that E2.02 allows).",
         "The total derivative of the estimate, or a window.",
-        switch="holding_comparison.estimation.window=null",
+        switch="holding_comparison.estimation.window=null holding_comparison.estimation.rates=[10,20,0.5,0.0001]",
         evidence=(
             f"{ESTIMATION}.printed30.velocity_slope",
             f"{ESTIMATION}.total.velocity_slope",

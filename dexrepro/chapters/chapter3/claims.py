@@ -53,9 +53,10 @@ REACHING = (
         "3.7-3.10",
         "With an exact model and a free tool axis the null-space torque at least halves the distance in reach 1.",
         less(f"{FIXED}.exactpos1.rcm_distance_final", f"{FIXED}.exactposfree1.rcm_distance_final", 0.5),
-        printed=less(f"{FIXED}.printed_force1.rcm_distance_final", f"{FIXED}.exactposfree1.rcm_distance_final", 0.5),
+        printed=less(f"{FIXED}.bracket1.rcm_distance_final", f"{FIXED}.exactposfree1.rcm_distance_final", 0.5),
         source="ours",
-        note="The printed bracket of (3.31) drives the arm away.",
+        note="With the bracket of (3.31) as printed it does, too. What decides is how its arrows are read: from the "
+        "first letter to the second the force drives the arm away (E3.16b).",
     ),
     Claim(
         "C3.04",
@@ -71,7 +72,17 @@ REACHING = (
         "grows by less than a tenth (reach 1, exact model).",
         less(f"{FIXED}.exactpos1.tracking_error_max", f"{FIXED}.exactposfree1.tracking_error_max", 1.1),
         where="3.3.2",
-        note="Decoupling is dynamic, not perfect: torque clipping, the filter of dx_2d and the network couple the two.",
+        note="The null-space torque is dynamically consistent, (3.27) is not: e_2 holds the speed of all joints, so "
+        "the law brakes the null-space motion with a torque that the task feels (C3.04c). No torque is clipped here, "
+        "and without the network the coupling is larger.",
+    ),
+    Claim(
+        "C3.04c",
+        "3.7-3.10",
+        "With that braking taken through the projector as well, the tracking error stays below 0.1 mm with the "
+        "null-space torque (tool axis free, reach 1, exact model).",
+        less(f"{FIXED}.damped1.tracking_error_max", 1e-4),
+        source="ours",
     ),
     Claim(
         "C3.05",
@@ -163,8 +174,10 @@ PUSHING = (
         "The observer gives the external torque accurately: rms error below a tenth of it, with a model 10 % "
         "too light.",
         less(f"{PUSH}.plus.observer_error", 0.1),
+        source="ours",
         where="3.5.3",
-        note="The observer takes the weight it does not know for a push; the book takes the model for exact.",
+        note="A harder test than the book's, which takes the model for exact (C3.07b): the observer takes the weight "
+        "that it does not know for a push.",
     ),
     Claim(
         "C3.07b",
@@ -172,9 +185,10 @@ PUSHING = (
         "With an exact model the observer is that accurate, and its lag is the predicted 1/K_Ex (within 20 %).",
         every(
             less(f"{PUSH}.exact_plus.observer_error", 0.1),
-            within(f"{PUSH}.exact_plus.observer_lag", 0.8 * 0.02, 1.2 * 0.02),
+            within(f"{PUSH}.exact_plus.observer_lag_ratio", 0.8, 1.2),
         ),
         where="3.2.4",
+        note="Joint angles, speeds and torques are measured without noise; with noise see C3.08.",
     ),
     Claim(
         "C3.07c",
@@ -201,6 +215,8 @@ PUSHING = (
         "After a large push the arm returns to the remote centre within 2 s, pushed along +y or -y.",
         every(less(f"{PUSH}.plus.rcm_recovery_time", 2.0), less(f"{PUSH}.minus.rcm_recovery_time", 2.0)),
         where="3.5.3",
+        note="After 0.47 s; without the null-space torque, to which the book ascribes it, after 0.48 s: the main "
+        "task's orientation rule brings the arm back.",
     ),
     Claim(
         "C3.10",
@@ -211,6 +227,8 @@ PUSHING = (
             less(f"{PUSH}.minus.rcm_peak", f"{PUSH}.plain_minus.rcm_peak"),
         ),
         where="3.5.3",
+        note="By 4 % and 12 % of 7 mm, in single runs; where what is not printed varies it is a matter of luck "
+        "(study).",
     ),
     Claim(
         "C3.10b",
@@ -231,6 +249,8 @@ PUSHING = (
             less(f"{PUSH}.minus.error_peak", f"{PUSH}.plain_minus.error_peak"),
         ),
         where="3.5.3",
+        note="By 2 % and 7 % of 15 mm, in single runs. Without any null-space torque the peak is that without "
+        "compensation.",
     ),
 )
 
@@ -241,6 +261,7 @@ TRACKING = (
         "The arm follows the moving opening (Dis_R below 10 mm) and touches neither lid nor box.",
         every(less(f"{MOVING}.track.moving_distance_max", 0.01), less(f"{MOVING}.track.contact_time", 1e-3)),
         where="3.5.4",
+        note="It rests on the gripper's length as C3.02 does: with most shorter ones it fails (study).",
     ),
     Claim(
         "C3.12b",
@@ -313,6 +334,7 @@ GRASPING = (
         greater(f"{CLASSES}.wide.train_accuracy", 0.98),
         by_construction="Cornell's data, relabelled, is not available: synthetic scenes whose difficulty is ours.",
         where="3.4.2.3",
+        note="98.7 % with one seed of the network, and 92 % on new scenes.",
     ),
     Claim(
         "C3.20",
@@ -320,7 +342,8 @@ GRASPING = (
         "Grasps outside the safety region can be told from those inside: at most a tenth of them passes for safe.",
         less(f"{CLASSES}.wide.unsafe_called_safe", 0.1),
         where="3.4.2.2",
-        note="Needs a patch that reaches beyond the safety margin; see C3.20b.",
+        note="2 of 104. Needs a patch that reaches beyond the safety margin (C3.20b) and enough scenes: 200 were taken "
+        "after 150 had let 7 of 60 pass.",
     ),
     Claim(
         "C3.20b",
@@ -336,7 +359,9 @@ GRASPING = (
         "of them than with random grasps.",
         every(greater(f"{PICKS}.chosen.success", 0.5), greater(f"{PICKS}.success_gain", 0.0)),
         where="3.5, 3.6",
-        note="The book shows single grasps and no rate of success. Closing is modelled as a rigid hold.",
+        note="13 of 20 against 2 of 20; the 95 % interval of the former, 41 to 85 %, does not exclude half. The number "
+        "of proposals was raised to 200 because 40 left scenes without a good one. The book shows single grasps and no "
+        "rate of success. Closing is modelled as a rigid hold.",
     ),
 )
 

@@ -31,10 +31,11 @@ ERRORS = (
         "error",
         "The scale multiplies the whole difference, so R lies along P_R to P_EA: not across the link and not "
         "the shortest "
-        "distance that Fig. 3.3 and the text describe.",
+        "distance that Fig. 3.3 and the text describe. Of little consequence here: with the arrows of the reading "
+        "E3.16b it pulls the arm as near as the corrected form does.",
         "R = P_R P_E - P_EA P_E cos(theta_R) |P_R P_E| / |P_EA P_E|, the foot point's offset; pointing to P_R.",
-        switch="fixed_opening.null_space.force=printed",
-        evidence=(f"{FIXED}.printed_force1.rcm_distance_final", f"{FIXED}.exactpos1.rcm_distance_final"),
+        switch="fixed_opening.null_space.force=bracket",
+        evidence=tuple(f"{FIXED}.{c}.rcm_distance_final" for c in ("bracket1", "exactpos1", "exactposfree1")),
     ),
     Erratum(
         "E3.21",
@@ -91,10 +92,11 @@ READINGS = (
         "E3.16b",
         "(3.31), direction",
         "reading",
-        "With an arrow from its first to its second letter the bracket-corrected R points from P_R to the link "
-        "and would "
-        "push it away; the opposite convention makes it right.",
+        "With an arrow from its first to its second letter R, with the bracket as printed or corrected, points away "
+        "from P_R and drives the arm off; the opposite convention makes it right.",
         "F_R = K_R (P_R - foot point).",
+        switch="fixed_opening.null_space.force=printed",
+        evidence=tuple(f"{FIXED}.{c}.rcm_distance_final" for c in ("printed_force1", "bracket1", "exactposfree1")),
     ),
     Erratum(
         "E3.18",

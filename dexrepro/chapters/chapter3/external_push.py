@@ -163,7 +163,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
     metrics.update(
         observer_error=rms((seen - truth)[during]) / size,
         observer_change_error=rms((change - truth)[during]) / size,
-        observer_lag=_lag(time, truth, seen, config),
+        observer_lag=(lag := _lag(time, truth, seen, config)),
+        observer_lag_ratio=None if lag is None else lag * float(np.max(config.observer.gain)),
         torque_peak=float(np.abs(truth).max()),
         rcm_rest=rest,
         rcm_peak=peak,

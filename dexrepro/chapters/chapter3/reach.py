@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3.scene import ARM, ELBOW, WRIST, gripper_arm
-from dexrepro.control.null_space import consistent_inverse, damped_inverse
+from dexrepro.control.null_space import consistent_damping, consistent_inverse, damped_inverse
 from dexrepro.control.remote_centre import (
     centre_force,
     closest_point,
@@ -133,6 +133,8 @@ class Reach:
         torque += config.model.gravity_compensation * gravity
         if config.null_space.enabled:
             torque += projector @ self._subtask(state, centre)
+        if config.null_space.get("consistent_damping"):
+            damping = consistent_damping(damping, jacobian, inverse, projector)
         return torque, damping
 
     def _task(self, state: State, wanted: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array]:
@@ -181,10 +183,11 @@ class Reach:
         null = self.config.null_space
         segment, point = closest_point(centre, state.corners)
         joints = CARRIERS[segment]
-        if null.force == "printed":
-            force = printed_centre_force(centre, state.tip, state.corners[1], null.stiffness)
-        else:
+        if null.force == "corrected":
             force = centre_force(centre, point, null.stiffness)
+        else:
+            force = printed_centre_force(centre, state.tip, state.corners[1], null.stiffness)
+            force = force if null.force == "printed" else -force  # "bracket": arrows as in the corrected form
         jacobian = state.jacobian(point, joints)
         if null.jacobian == "last3":
             jacobian[:, :4] = 0.0

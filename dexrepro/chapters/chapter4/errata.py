@@ -27,7 +27,8 @@ ERRATA = (
         "E4.04",
         "(4.22)",
         "error",
-        "The bounds a and b are exchanged (h selects b), and the denominators carry dots.",
+        "The bounds a and b are exchanged (h selects b; no matter where beta_a = beta_b), and the denominators carry "
+        "dots, possibly by text extraction.",
         "l_i + h phi_b'/phi_b + (1 - h) phi_a'/phi_a >= 0; it holds with either sign, as l_i exceeds both ratios.",
     ),
     Erratum("E4.06", "(4.19)-(4.27), (4.33)", "slip", "P^T J is a row where a column of torques is meant.", "J^T P."),
@@ -95,7 +96,8 @@ ERRATA = (
         "E4.15",
         "(4.39)",
         "error",
-        "V' = eta_s V + mu_s cannot give (4.40), and mu_s lacks gamma; letters of its last term differ from (4.35).",
+        "V' = eta_s V + mu_s cannot give (4.40), and mu_s lacks gamma; letters of its last term differ from (4.35). "
+        "Signs and letters may be text extraction.",
         "V' <= -eta_s V + mu_s, with 1/2 gamma |W*|^2 + 1/2 epsilon^2 + iota omega-bar.",
     ),
     Erratum(

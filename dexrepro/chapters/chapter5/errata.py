@@ -15,7 +15,11 @@ ERRATA = (
         "The target forcing has - D v; solving (5.1) for f gives + D v (chapter 6 prints it so).",
         "+ D v",
         switch="letter_accuracy.training.damping_sign=-1",
-        evidence=tuple(f"{ACCURACY}.{case}.n20.dmp.mse" for case in ("default", "printed_damping")),
+        evidence=(
+            *(f"{ACCURACY}.{case}.n20.dmp.mse" for case in ("default", "printed_damping")),
+            *(f"{STYLES}.{case}.z.final" for case in ("default", "printed_damping")),
+            *(f"{CROSSING}.{case}.skill3.rms" for case in ("default", "printed_damping")),
+        ),
     ),
     Erratum(
         "E5.02",
@@ -133,7 +137,7 @@ ERRATA = (
     Erratum(
         "E5.16",
         "Property 5.1",
-        "error",
+        "slip",
         "M' - C is not skew-symmetric; M' - 2C is, which (5.42) uses and chapter 8 prints.",
         "M' - 2C.",
     ),
@@ -145,7 +149,11 @@ ERRATA = (
         "printed sign makes learning a positive feedback.",
         "+ g(S), or the first sign of (5.44) turned.",
         switch="bounded_tracking.law.network_sign=-1",
-        evidence=tuple(f"{TRACKING}.{c}.{m}" for c in ("letter_w", "printed_sign") for m in ("bound_use", "outside")),
+        evidence=tuple(
+            f"{TRACKING}.{c}.{m}"
+            for c in ("letter_w", "printed_sign", "sign_only", "printed_no_robust")
+            for m in ("bound_use", "outside")
+        ),
     ),
     Erratum(
         "E5.18",
@@ -188,9 +196,9 @@ ERRATA = (
         "E5.23",
         "L before (5.39)",
         "reading",
-        "L = -sqrt(1/k_2^2 + 1/k_1^2 + k_c^2) |v'/v| does not give the rate k_c claimed and vanishes once v has "
-        "reached a floor. With a pure exponential it is a constant gain; a radical over the first two terms may have "
-        "been meant.",
+        "(5.39) needs L - v'/v <= -k_c; L = -sqrt(1/k_2^2 + 1/k_1^2 + k_c^2) |v'/v| gives about k_c |v'/v|, whose "
+        "unit is not that of a rate: enough where |v'/v| is above about 1/s, too little below, and nothing once v has "
+        "reached a floor. A radical over the first two terms may have been meant.",
         "L = -(k_c + |v'/v|), so that L - v'/v <= -k_c.",
         switch="bounded_tracking.law.virtual_gain=printed",
         evidence=tuple(
@@ -217,7 +225,9 @@ ERRATA = (
         "are not defined.",
         "u = 0; the term belongs into the torque.",
         switch="bounded_tracking.law.robust_rate=1",
-        evidence=tuple(f"{TRACKING}.{case}.outside" for case in ("letter_w", "small_robust", "printed_robust")),
+        evidence=tuple(
+            f"{TRACKING}.{case}.outside" for case in ("letter_w", "small_robust", "printed_robust", "sign_robust")
+        ),
     ),
     Erratum(
         "E5.26",

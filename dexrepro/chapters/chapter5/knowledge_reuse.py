@@ -19,7 +19,7 @@ FIGURES = {
         "From the second letter on the network that keeps its weights starts with a smaller error.",
     ),
 }
-TABLES = {"T5.I": "RMS joint error [mrad] with weights kept and with weights learned anew"}
+TABLES = {"T5.I": "RMS joint error [mrad] with weights kept, learned anew, or kept under the printed sign"}
 
 
 def simulate(config: Config, rng: Any) -> Recording:

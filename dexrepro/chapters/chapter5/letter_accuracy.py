@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -41,9 +40,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     written = letters.demonstrations(config.hand.letter, config.demonstrations, config.kernels.draws, config, hand)
     for count in config.kernels.counts:
         for draw, demonstration in enumerate(written):
-            # The target forcing with the printed sign of D v, Eq. (5.5), is that of the same path at negated velocity.
-            taught = replace(demonstration, velocity=config.training.damping_sign * demonstration.velocity)
-            for method, primitive in _learn(count, taught, config, generator).items():
+            for method, primitive in _learn(count, letters.taught(demonstration, config), config, generator).items():
                 errors, path = _errors(primitive, demonstration, config)
                 rows.append((count, draw, method, *errors))
                 runs.append((demonstration.position, path))

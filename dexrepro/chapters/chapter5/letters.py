@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,11 @@ def demonstrations(
     time = np.linspace(0.0, config.dmp.duration, config.dmp.samples)
     paths = recorded(files, count, config.dmp.samples, config.unit, axes=2)
     return [Demonstration.of(time, (1 + config.perturbation) * smoothed(time, p, config.hand.cutoff)) for p in paths]
+
+
+def taught(demonstration: Demonstration, config: Config) -> Demonstration:
+    """What a primitive learns from: with the printed sign of D v, Eq. (5.5), the same path at negated velocity."""
+    return replace(demonstration, velocity=config.training.damping_sign * demonstration.velocity)
 
 
 def letter_scaling(config: Config, dimensions: int = 2) -> Scaling:

@@ -44,7 +44,8 @@ def simulate(config: Config, rng: Any) -> Recording:
             and (averages[1].start == averages[1].goal).any()
         ):
             return Recording(status="not defined: the printed amplitude is zero where start and goal agree on an axis")
-        skills = crossing.learn(averages, config, generator)
+        taught = {blocks: letters.taught(average, config) for blocks, average in averages.items()}
+        skills = crossing.learn(taught, config, generator)
         rows += _quality(draw, skills, config)
         changes += _changes(draw, skills, config)
         reached += _generalisations(draw, skills, config)

@@ -42,9 +42,10 @@ def simulate(config: Config, rng: Any) -> Recording:
     own = config.demonstrations or {}
     names = (config.hand.base, *config.hand.targets)
     shown = {name: letters.demonstrations(name, own.get(name), 1, config, hand)[0] for name in names}
+    taught = {name: letters.taught(demonstration, config) for name, demonstration in shown.items()}
     rows, kept = [], {}  # type: list[Any], dict[tuple[str, int], DMP]
     for draw in range(config.features.draws):
-        learned = _learn(shown, config, generator)
+        learned = _learn(taught, config, generator)
         for (letter, m), primitive in learned.items():
             path = letters.rollout(primitive, config)
             target, base = (letters.rms_distance(path, shown[name].position) for name in (letter, config.hand.base))

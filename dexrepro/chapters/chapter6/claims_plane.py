@@ -174,7 +174,8 @@ PLANE = (
     Claim(
         "C6.38",
         "6.2d",
-        "With tau = 1 s the tracking gains alone leave the tube; a barrier weighted by H^2 keeps it.",
+        "With tau = 1 s the tracking gains alone leave the tube; a barrier weighted by H^2 keeps it (law with the "
+        "recorded acceleration).",
         every(
             greater(f"{LAW}.tau1_no_barrier.e_share", 1.0),
             less(f"{LAW}.tau1_feedforward_h2.e_share", 1.0),
@@ -182,6 +183,7 @@ PLANE = (
         ),
         source="ours",
         where="(6.9)",
+        note="The path rides the barrier, at 99.99 % of the tube; the literal law (6.15) with that weight leaves it.",
     ),
 )
 
@@ -220,6 +222,7 @@ THEORY = (
         "alpha_z and beta_z = alpha_z / 4 make (6.1) critically damped.",
         within(f"{SKILL}.book.damping_ratio", 1 - 1e-9, 1 + 1e-9),
         where="Remark 6.6",
+        by_construction="arithmetic on the printed values",
     ),
     Claim(
         "C6.13",

@@ -136,9 +136,10 @@ ERRATA = (
     Erratum(
         "E6.13",
         "(6.24)",
-        "error",
-        "x_j^dw refers to itself, so that |d| = 33 <= 1 would be asked; (6.25) needs directions. With 1 cm a hand the "
-        "distance may be wrong by 2 cm.",
+        "reading",
+        "x_j^dw refers to itself, so that |d| = 33 <= 1 would be asked; an index for the other hand is probably lost "
+        "(possibly in extraction). One hand about the other within 1 cm keeps the distance within 1 cm; both about "
+        "their common centre within 1 cm each, within 2 cm. (6.25) leaves the directions open.",
         "Both hands about their common centre, in the present direction, with half the margin.",
         switch="skeleton_constraints.hand_margin=1.0",
         evidence=(

@@ -95,7 +95,8 @@ class RedundantController(TaskController):
     """The task force on an arm with more joints than the task has axes, with the arm's own gravity compensation.
 
     The remaining joints are held near their start by accelerations stiffness (q_0 - q) - 2 sqrt(stiffness) dq [1/s^2],
-    projected so that they do not move the task. limits: largest torques [N m].
+    projected so that they do not move the task. Gravity and the inertia of this projection are the arm's own, exact;
+    the law that gives the task force knows neither. limits: largest torques [N m].
     """
 
     def __init__(

@@ -165,7 +165,10 @@ def _tracking(recording: Recording, config: Config) -> Metrics:
 
 
 def _transfer(recording: Recording, config: Config) -> Metrics:
-    """Jump of the desired force by the gain alone, force rate and reference speed about the change of gain."""
+    """Jump of the desired force by the gain alone; what follows the change of gain.
+
+    force_rate, reference_speed: largest. oscillation: way of the indentation beyond one press and release [mm].
+    """
     contact, phase = _contact(recording), recording["phase"]
     indentation = recording["arm.tip"][:, 0] - config.object.surface
     state = np.column_stack([indentation, (recording["path"][:, 0] - config.object.surface) / config.cost.output])
@@ -175,8 +178,8 @@ def _transfer(recording: Recording, config: Config) -> Metrics:
         start = recording.time[(phase >= TRANSFERRING).argmax()]
     near = recording.between(start - 0.2, start + config.watched) & contact
     rate = np.gradient(recording["object.x"], config.step)
-    depth = 1e3 * indentation[contact]
-    travel = float(np.abs(np.diff(depth)).sum() - (2.0 * depth.max() - depth[0] - depth[-1]))
+    depth = 1e3 * indentation[near]
+    travel = float(np.abs(np.diff(depth)).sum() - (2.0 * depth.max() - depth[0] - depth[-1])) if near.any() else 0.0
     return {
         "switch_at": float(start),
         "force_jump": float(jump[contact[:-1]].max()) if contact[:-1].any() else None,
