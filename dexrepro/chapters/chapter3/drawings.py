@@ -113,8 +113,10 @@ def shortest_distance(recording: Recording, config: Config) -> Any:
 def _space(style: Any) -> tuple[Any, Any]:
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.4, subplot_kw={"projection": "3d"})
     for name, set_label in zip("xyz", (axes.set_xlabel, axes.set_ylabel, axes.set_zlabel)):
-        set_label(f"{name} [m]", labelpad=-4)
+        set_label(f"{name} [m]", labelpad={"x": -3, "y": 0, "z": 5}[name])
     axes.tick_params(pad=-1)
+    axes.tick_params(axis="z", pad=3)
+    axes.locator_params(nbins=4)
     axes.view_init(elev=18, azim=-60)
     return figure, axes
 
