@@ -136,11 +136,11 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
 
     Raises InputError with one sentence where an override names no key, cannot be parsed or is out of range.
     """
-    shipped = _shipped(str(config_dir()), chapter, _changed(chapter))
     if not extra_dir and (own := [text for text in overrides if re.match(r"\+(scene|own)=\w", text)]):
         raise InputError(
             f"'{own[0]}' needs --config-dir FOLDER, the folder that holds {own[0][1:].replace('=', '/')}.yaml"
         )
+    shipped = _shipped(str(config_dir()), chapter, _changed(chapter))
     search = [f"hydra.searchpath=['file://{Path(extra_dir).resolve()}']"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
     try:

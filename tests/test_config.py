@@ -98,6 +98,17 @@ def test_the_parts_of_a_chapter_fit_together(chapter: str) -> None:
         assert claim.experiment in names | {""}, claim.id
 
 
+@pytest.mark.parametrize("chapter", chapters.numbers())
+def test_every_switch_of_an_erratum_is_an_override_that_composes(chapter: str) -> None:
+    for erratum in chapters.load(chapter).errata:
+        if erratum.switch:
+            overrides = shlex.split(erratum.switch)
+            composed = compose_chapter(chapter, overrides)
+            experiment = overrides[0].lstrip("+").partition(".")[0]
+            if experiment != "shared":
+                assert experiment_cases(composed, experiment), erratum.id
+
+
 def test_experiment_names_are_unique_in_the_book() -> None:
     names = [experiment.name for chapter in CHAPTERS for experiment in chapters.load(chapter).experiments]
     assert len(set(names)) == len(names)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import shlex
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from dexrepro import chapters, cli
+from dexrepro import cli
 from dexrepro.config import InputError
 from dexrepro.plan import plan_chapter
 
@@ -148,14 +147,3 @@ def test_a_file_that_cannot_be_written_is_named(
 def test_check_of_one_experiment_needs_no_other(result: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("dexrepro.baselines.baseline_dir", lambda: tmp_path / "none")
     assert cli._dispatch(["check", "only=decay"]) == 1, "metrics without a baseline are drift"
-
-
-def test_the_printed_form_of_every_erratum_can_be_selected(tmp_path: Path) -> None:
-    for number in chapters.numbers():
-        for erratum in chapters.load(number).errata:
-            if erratum.switch:
-                overrides = shlex.split(erratum.switch)
-                named = overrides[0].lstrip("+").partition(".")[0]
-                only = [f"only={named}"] if named in [e.name for e in chapters.load(number).experiments] else []
-                plans, _ = plan_chapter(number, [*overrides, *only, f"results='{tmp_path}'"])
-                assert plans, erratum.id

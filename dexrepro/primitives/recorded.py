@@ -27,7 +27,7 @@ def read_path(path: str, unit: str = "m", axes: int = 3) -> tuple[Array, Array]:
         raise ValueError(f"unit = {unit} is not allowed: it must be one of {', '.join(UNITS)}")
     columns = COLUMNS[: axes + 1]
     try:
-        with open(path, newline="") as file:
+        with open(path, newline="", encoding="utf-8-sig") as file:  # spreadsheets begin it with a mark
             rows = [(reader.line_num, row) for reader in [csv.reader(file)] for row in reader if row]
     except (OSError, UnicodeDecodeError) as error:
         raise ValueError(f"cannot read '{path}': {getattr(error, 'strerror', None) or 'it is no text'}") from None

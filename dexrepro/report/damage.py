@@ -12,7 +12,7 @@ import yaml
 from dexrepro.config import InputError
 from dexrepro.storage import read_json, read_yaml
 
-KEYS = ("chapter", "experiment", "cases", "seed", "revision", "differs", "wall", "steps", "real_time_factor")
+KEYS = ("chapter", "experiment", "cases")
 
 
 def check_result(folder: Path, *names: str, series: bool = False) -> None:

@@ -219,7 +219,7 @@ class _Report:
         return {
             "id": identifier,
             "title": title,
-            "columns": [(name, frame[name].dtype.kind in "if") for name in frame],
+            "columns": [(name, _column_kind(frame[name])) for name in frame],
             "rows": [[_cell(value) for value in row] for row in frame.astype(object).to_numpy().tolist()],
             "csv": f"{base}.csv",
             "tex": f"{base}.tex",
@@ -318,11 +318,24 @@ def _width(svg: Path) -> int:
     return round(SCALE * float(found[1])) if found else 800
 
 
+def _column_kind(column: pd.Series[Any]) -> str:
+    """How a table's column is set: "number", "words" (some cell is a phrase, so that it needs width) or ""."""
+    if column.dtype.kind in "if":
+        return "number"
+    return "words" if column.astype(str).str.len().max() > 24 else ""
+
+
 def _cell(value: Any) -> str:
-    """A table's entry, with a minus sign at which no line is broken."""
+    """A table's entry: a minus sign at which no line is broken, words in place of ``True`` and of a key."""
     if pd.isna(value):
         return "–"
-    return f"{value:.4g}".replace("-", "\u2212") if isinstance(value, float) else str(value)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str) and re.fullmatch(r"[a-z][a-z0-9]+(_[a-z0-9]+)+", value):
+        return value.replace("_", " ")
+    if isinstance(value, float):
+        return (f"{value:.0f}" if 1e4 <= abs(value) < 1e6 else f"{value:.4g}").replace("-", "\u2212")
+    return str(value)
 
 
 def _copy(source: Path, target: Path) -> None:

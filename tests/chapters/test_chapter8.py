@@ -105,6 +105,9 @@ def test_claims_and_errata_speak_of_cases_that_exist():
 def test_a_variant_that_turns_a_comparison_around_is_marked():
     metrics = {"a": {"m": 1.0}, "b": {"m": 2.0}, "c": {"m": 3.0}}
     table = sensitivity_table(
-        [Variant("X", "one", "m", ("c", "b"), ("a", "b")), Variant("X", "two", "m", ("b", "c"), ("a", 1.5))], metrics
+        [Variant("X", "one", "m", ("c", "b"), ("a", "b")), Variant("X", "two", "m", ("b", "c"), ("a", 1.5))],
+        metrics,
+        {"m": "error [mm]"},
     )
-    assert list(table.flips) == ["yes", "no"]
+    assert list(table["verdict changes"]) == ["yes", "no"]
+    assert list(table["quantity"]) == ["error [mm]", "error [mm]"]

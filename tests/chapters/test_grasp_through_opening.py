@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -50,6 +51,19 @@ def test_a_block_gripped_across_its_short_side_is_lifted_out_and_one_gripped_alo
         grasp = joined.Grasp(block.x, block.y, angle, floor + 0.05)
         result = joined._attempt(settings, [block], grasp, tuple(settings.centre), joined.Recording())
         assert result["lifted"] == lifted
+
+
+def test_the_film_shows_the_object_rise_with_the_hand(settings):
+    block, recording = replace(item(settings, 0.03, 0.02, yaw=0.6), colour=(0.1, 0.1, 0.9, 1.0)), joined.Recording()
+    grasp = joined.Grasp(block.x, block.y, 0.6, settings.centre[2] - settings.box.height + 0.05)
+    joined._attempt(settings, [block], grasp, tuple(settings.centre), recording)
+    assert recording["raised"][0] < 0.01
+    assert recording["raised"][-1] > settings.lifted
+    with joined.scene(settings) as world:
+        shown = joined.stage(world, recording, settings)
+        views = [world.snapshot(shown, time, joined.FILM.camera, (160, 132)) for time in (0.0, recording.time[-1])]
+    below, above = (np.argwhere(view[..., 2] > 1.4 * view[..., :2].max(axis=2)).mean(axis=0)[0] for view in views)
+    assert below - above > 10  # rows of the picture
 
 
 def test_roll_error_takes_the_nearer_side_of_the_fingers(settings):

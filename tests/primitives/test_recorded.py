@@ -88,3 +88,9 @@ def test_several_files_take_turns(tmp_path: Path) -> None:
     assert [path[-1, 0] for path in paths] == pytest.approx([7, 14, 7])
     with pytest.raises(ValueError, match="2 files are more than the 1 demonstrations"):
         demonstrations(str(tmp_path / "*.csv"), 1, 20, "m", axes=2)
+
+
+def test_a_file_saved_by_a_spreadsheet_is_read(tmp_path: Path) -> None:
+    rows = "\n".join(f"{k},{k},0" for k in range(8))
+    (tmp_path / "saved.csv").write_text(f"time,x,y\n{rows}\n", encoding="utf-8-sig")
+    assert read_path(str(tmp_path / "saved.csv"), "m", 2)[1][-1].tolist() == [7, 0]

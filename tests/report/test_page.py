@@ -10,6 +10,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from PIL import Image
 
@@ -155,3 +156,13 @@ def test_in_a_real_browser(report: Path, tmp_path: Path) -> None:
         still, moving = (f"files/decay/film_plain.{kind}" for kind in ("png", "gif"))
         assert state["sources"] == ([still, moving] if name == "chapter90.html" else None), "plays when asked to"
         assert "CONSOLE" not in done.stderr, done.stderr[-2000:]
+
+
+def test_cells_are_words_and_numbers_that_read_well() -> None:
+    shown = [page._cell(value) for value in (True, "no_network", "K_1 + K_2", "k_s", 15385.3, -0.0123456, float("nan"))]
+    assert shown == ["yes", "no network", "K_1 + K_2", "k_s", "15385", "\u22120.01235", "–"]
+
+
+def test_a_column_of_phrases_is_given_width() -> None:
+    columns = [pd.Series([1.0, 2.0]), pd.Series(["a", "b"]), pd.Series(["a", "a phrase that would be broken up"])]
+    assert [page._column_kind(column) for column in columns] == ["number", "", "words"]

@@ -40,9 +40,9 @@ FIGURES = {
         "The proposed law keeps the contact force closest to 15 N on all three trajectories.",
     ),
     "1.19": Figure(
-        "Instants of the task in the first trajectory, proposed law: start, object on the left, tilted by pi/4, "
-        "swinging along the holding line, level over the right target, pressed on it. Below: DFR's motion and tilt. "
-        "The book shows photographs.",
+        "Simulated Baxter. Instants of the task in the first trajectory, proposed law: start, object on the left, "
+        "tilted by pi/4, swinging along the holding line, level over the right target, pressed on it. Below: DFR's "
+        "motion and tilt. The book shows photographs.",
         "Six instants of two arms that lift, tilt, swing and put down a ball.",
     ),
     "1.A": Figure(
@@ -335,7 +335,7 @@ def _draw_limits(metrics: Any) -> Any:
         values = [metrics.get(f"t1_{law}{ending}", {}).get("rmse") for ending in groups.values()]
         places = [(i + 0.27 * (k - 1), value) for i, value in enumerate(values) if value is not None]
         bars = axis.bar(*zip(*places), width=0.25, color=style.LINES[role]["color"], label=law)
-        axis.bar_label(bars, fmt="%.2g", fontsize=6.5)
+        axis.bar_label(bars, fmt="%.2f", fontsize=6.5)
     axis.set_xticks(range(len(groups)), groups)
     axis.set_yscale("log")
     axis.set_ylabel("RMS force error [N]")

@@ -122,8 +122,8 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     left.legend(loc="upper right")
     frame = recordings["growth"].frames["growth"]
     for column, role in zip(frame.columns[1:], ("printed", "extra1", "rival", "extra3", "plain", "book")):
-        right.semilogy(frame["time"], frame[column], label=f"L = {column}", **style.LINES[role])
-    right.set(xlabel="Time [s]", ylabel="Largest force error in 10 s [N]", ylim=(1e-3, 1e3))
+        right.semilogy(frame["time"], frame[column], label=f"L = {column}/s", **style.LINES[role])
+    right.set(xlabel="Time [s]", ylabel="Force error, largest\nof 10 s [N]", ylim=(1e-3, 1e3))
     right.legend(loc="upper right", ncols=3)
     share = 100 * (metrics["built"]["rising"] or 0)
     style.title(

@@ -33,7 +33,7 @@ FIGURES = {
         "As DFR comes closer the minimum of the potential moves from beside the object into it.",
     ),
     "1.12": Figure(
-        "The camera's object: four edge points, their noisy average at 15 Hz, off-centre, over two seconds.",
+        "Simulated. The camera's object: four edge points, their noisy average at 15 Hz, off-centre, over two seconds.",
         "The measured position scatters about a point 18 mm from the true centre.",
     ),
     "1.16": Figure(

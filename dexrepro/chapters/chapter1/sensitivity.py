@@ -280,8 +280,8 @@ def _flips(t: Metrics, c: Metrics) -> list[dict[str, Any]]:
     """Rows of T1.S: what is varied, the claim, the two errors that decide it, and the verdict then."""
 
     def row(claim: str, variant: str, own: Any, other: Any, what: str) -> dict[str, Any]:
-        return {"claim": claim, "variant": variant, "proposed [N]": own, "rival [N]": other, "rival": what,
-                "holds": bool(own < other)}  # fmt: skip
+        return {"claim": claim, "variant": variant, "rival": what, "RMS force error, proposed [N]": own,
+                "RMS force error, rival [N]": other, "claim holds": "yes" if own < other else "no"}  # fmt: skip
 
     rows = [row("C1.01", f"case {i}, as printed", t[f"proposed_c{i}"], t[f"force_c{i}"], "force") for i in (1, 2, 3)]
     rows += [

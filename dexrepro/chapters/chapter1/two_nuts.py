@@ -22,7 +22,7 @@ FIGURES = {
         "The hand stays far outside its comfortable range and the tool shakes by about a millimetre.",
     ),
     "1.14": Figure(
-        "Re-fixing and a scale of 1, the same operator. The book shows five photographs.",
+        "Re-fixing and a scale of 1, the same synthetic operator. The book shows five photographs.",
         "The hand stays inside its comfortable range thanks to re-fixing, and the tool shakes less.",
     ),
 }

@@ -14,7 +14,7 @@ from dexrepro.robots.kinematics import forward
 
 def describe(config: Config) -> str:
     """One case in a few words."""
-    parts = [f"{config.task} task", f"mass error {100 * config.model.mass_error:g} %"]
+    parts = [f"{config.task.replace('_', ' ')} task", f"mass error {100 * config.model.mass_error:g} %"]
     if config.straight:
         parts.append("straight to the target")
     parts.append(f"K_R {config.null_space.stiffness:g} N/m" if config.null_space.enabled else "no null-space torque")
@@ -113,8 +113,10 @@ def shortest_distance(recording: Recording, config: Config) -> Any:
 def _space(style: Any) -> tuple[Any, Any]:
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.4, subplot_kw={"projection": "3d"})
     for name, set_label in zip("xyz", (axes.set_xlabel, axes.set_ylabel, axes.set_zlabel)):
-        set_label(f"{name} [m]", labelpad=-4)
+        set_label(f"{name} [m]", labelpad={"x": -3, "y": 0, "z": 5}[name])
     axes.tick_params(pad=-1)
+    axes.tick_params(axis="z", pad=3)
+    axes.locator_params(nbins=4)
     axes.view_init(elev=18, azim=-60)
     return figure, axes
 

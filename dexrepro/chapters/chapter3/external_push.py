@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import reach
-from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
+from dexrepro.chapters.chapter3.measures import add_distances, headed, reach_metrics
 from dexrepro.chapters.chapter3.scene import (
     ARM,
     ELBOW,
@@ -306,7 +306,7 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    tables = {"T3.B": pd.DataFrame(rows).rename(columns=COLUMNS)}
+    tables = {"T3.B": headed(rows)}
     if "exact_plus" in recordings:
         headers = {
             "gain": "K_Ex [1/s]",

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter3 import drawings, reach
-from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
+from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, headed, reach_metrics
 from dexrepro.chapters.chapter3.scene import CAMERA, FILMED, Touching, build, cutaway
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 
@@ -161,7 +161,7 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    return {"T3.A": pd.DataFrame(rows).rename(columns=COLUMNS), "T3.S": _sensitivity(metrics)}
+    return {"T3.A": headed(rows), "T3.S": _sensitivity(metrics)}
 
 
 # Variant, what differs, claim, metric, bound that the claim puts on it [m] and the case it departs from.
@@ -193,7 +193,8 @@ def _sensitivity(metrics: Mapping[str, Metrics]) -> pd.DataFrame:
         if case in metrics and base in metrics:
             holds, held = (x is not None and x < bound for x in (value, before))
             rows.append(
-                {"variant": what, "claim": claim, "metric": metric, "bound": bound, "default": before, "value": value,
-                 "holds": holds, "flips": holds != held}
+                {"variant": what, "claim": claim, "quantity": COLUMNS[metric], "bound": bound, "as shipped": before,
+                 "varied": value, "holds": "yes" if holds else "no",
+                 "verdict changes": "yes" if holds != held else "no"}
             )  # fmt: skip
     return pd.DataFrame(rows)

@@ -16,8 +16,8 @@ from scipy.ndimage import label as regions_of
 from scipy.stats import beta
 
 from dexrepro.chapters.chapter3 import reach
-from dexrepro.chapters.chapter3.scene import ARM, Touching, add_box, gripper_arm, start_posture
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.chapters.chapter3.scene import ARM, Touching, add_box, cutaway, gripper_arm, start_posture
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.rendering import Overhead
 from dexrepro.physics.world import Camera, World
 from dexrepro.vision.classifier import GraspClassifier
@@ -37,6 +37,36 @@ FIGURES = {
     )
 }
 TABLES = {"T3.G": "Scenes: grasp, what happened, errors"}
+FILM = Film(
+    "chosen", "The simulated arm reaches through the opening, takes the object that the network chose and lifts it out "
+    "(first success; two walls of the box are left out).",
+    Camera(target=(0.55, -0.2, 0.2), distance=1.65, yaw=40.0, pitch=-25.0), "raised", "Object lifted by [mm]",
+    scale=1e3,
+)  # fmt: skip
+
+
+def scene(config: Config) -> World:
+    world = World(step=config.step, perturbation=config.perturbation)
+    add_box(world, config.box, config.centre)
+    world.add_arm(ARM, gripper_arm(config.gripper), start_posture(config.gripper, config.lift), contacts=True)
+    return world
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    """The objects of the attempt that is shown, and the box cut open."""
+    items = [
+        Item(
+            r["x"],
+            r["y"],
+            r["yaw"],
+            (r["width"], r["depth"], r["height"]),
+            bool(r["round"]),
+            (r["R"], r["G"], r["B"], 1.0),
+        )
+        for r in recording.frames["items"].to_dict("records")
+    ]
+    place_items(world, _floor(config), items)
+    return cutaway(world, recording, config)
 
 
 def simulate(config: Config, rng: Any) -> Recording:
@@ -143,10 +173,8 @@ def _attempt(
     values = Config.of({**config, "target": [grasp.x, grasp.y, depth], "roll": grasp.angle, "centre": list(opening)})
     values["law"], values["observer"] = copy.deepcopy(config.law), copy.deepcopy(config.observer)
     held: list[int] = []
-    with World(step=config.step, perturbation=config.perturbation) as world:
-        add_box(world, config.box, config.centre)
+    with scene(config) as world:
         names = place_items(world, _floor(config), items, mass=config.item_mass)
-        world.add_arm(ARM, gripper_arm(config.gripper), start_posture(config.gripper, config.lift), contacts=True)
 
         def close() -> None:
             plant = world.arm(ARM)
@@ -166,6 +194,7 @@ def _attempt(
         lifted = int(raised > config.lifted)
         if lifted and not recording.images:
             recording.images["lifted"] = world.snapshot(run, sum(config.phases), VIEW)
+            _keep(recording, run, items, names, held[0])
     recording.steps += run.steps
     recording.simulated += run.simulated
     outcome = "lifted" if lifted else "held, not lifted" if held else "closed on nothing"
@@ -177,6 +206,17 @@ def _attempt(
         "lifted": lifted,
         "contact_time": float((run["contact"][:, 0] > 0).sum() * config.step),
     }
+
+
+def _keep(recording: Recording, run: Recording, items: list[Item], names: list[str], held: int) -> None:
+    """What the film needs of one attempt: joint angles, places and looks of the items, how far one is lifted [m]."""
+    channels = ("time", f"{ARM}.position", *(f"{name}.pose" for name in names))
+    recording.series = {name: run[name] for name in channels}
+    height = run[f"{names[held]}.pose"][:, 2]
+    recording.series["raised"] = height - height.min()
+    looks = [(item.x, item.y, item.yaw, *item.size, item.round, *item.colour[:3]) for item in items]
+    columns = ["x", "y", "yaw", "width", "depth", "height", "round", "R", "G", "B"]
+    recording.frames["items"] = pd.DataFrame(looks, columns=columns)
 
 
 def _moved(item: Item, body: Any) -> Item:
@@ -238,7 +278,8 @@ def tabulate(
     for case, recording in recordings.items():
         table = recording.frames["scenes"].copy()
         table.insert(0, "case", case)
+        table["opening_error"] *= 1e3
         tables.append(table)
-    names = {"opening_error": "opening error [m]", "x": "x [m]", "y": "y [m]", "angle": "angle [rad]",
+    names = {"opening_error": "opening error [mm]", "x": "x [m]", "y": "y [m]", "angle": "angle [rad]",
              "truly": "true class", "possible": "graspable candidates", "contact_time": "contact [s]"}  # fmt: skip
     return {"T3.G": pd.concat(tables).rename(columns=names)} if tables else {}

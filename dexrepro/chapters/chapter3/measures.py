@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3.scene import ARM, distance_to_centre, gripper_arm
@@ -70,6 +74,15 @@ COLUMNS = {
     "error_peak": "peak end error [m]",
 }
 """What the metrics are called in tables, with their units."""
+
+
+def headed(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
+    """A table of metrics under the names of :data:`COLUMNS`, lengths in mm."""
+    table = pd.DataFrame(rows).rename(columns=COLUMNS)
+    lengths = [name for name in map(str, table) if name.endswith(" [m]")]
+    for name in lengths:
+        table[name] = 1e3 * table[name].astype(float)
+    return table.rename(columns={name: name.replace(" [m]", " [mm]") for name in lengths})
 
 
 def last(values: Array) -> float:

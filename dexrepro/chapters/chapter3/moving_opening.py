@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3 import drawings, reach
-from dexrepro.chapters.chapter3.measures import COLUMNS, add_distances, reach_metrics
+from dexrepro.chapters.chapter3.measures import add_distances, headed, reach_metrics
 from dexrepro.chapters.chapter3.scene import ARM, FILMED, Touching, build, cutaway
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.world import Camera, World
@@ -37,7 +37,7 @@ FIGURES = {
 }
 TABLES = {"T3.D": "Moving opening: laws and models"}
 RATE = 50.0
-VIEW = Camera(target=(0.62, -0.2, 0.15), distance=1.3, yaw=30.0, pitch=-40.0)
+VIEW = Camera(target=(0.45, -0.15, 0.2), distance=1.6, yaw=30.0, pitch=-40.0)
 FILM = Film(
     "track", "The lid moves along a figure of eight while the arm stands in its opening and holds the target.", FILMED,
     "rcm_distance", "Dis_R [mm]", scale=1e3, span=(4.0, 15.5),
@@ -76,7 +76,7 @@ def simulate(config: Config, rng: Any) -> Recording:
                 index = min(round(now / config.step), len(recording.time) - 1)
                 pose = {"lid": [*centre(now), 0.0, 0.0, 0.0, 1.0]}
                 positions = {ARM: recording[f"{ARM}.position"][index]}
-                recording.images[name] = world.render(positions, pose, VIEW)
+                recording.images[name] = world.render(positions, pose, VIEW, (1000, 750))
     recording.series["centre"] = np.array([centre(time) for time in recording.time])
     add_distances(recording, config, recording["centre"])
     return recording
@@ -177,4 +177,4 @@ def tabulate(
         for case, values in metrics.items()
         if case in config.cases
     ]
-    return {"T3.D": pd.DataFrame(rows).rename(columns=COLUMNS)}
+    return {"T3.D": headed(rows)}

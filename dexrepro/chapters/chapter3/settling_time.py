@@ -164,6 +164,9 @@ def tabulate(
         "settling_max": "longest settling [s]",
         "growth": "largest growth of V [-]",
         "torque_1": "torque from 1 rad [N m]",
+        "k11": "k_11",
+        "k21": "k_21",
+        "inertia_max": "largest inertia [kg m^2]",
         "bound": "bound, corrected [s]",
         "bound_printed": "bound, printed [s]",
     }

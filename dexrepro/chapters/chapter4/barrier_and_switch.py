@@ -149,7 +149,7 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
             {
                 "claim": claim,
                 "change": change,
-                "metric": metric,
+                "quantity": COLUMNS[metric],
                 "value": value,
                 "held against": limit,
                 "claim holds": holds,

@@ -18,8 +18,8 @@ from dexrepro.robots.baxter import baxter
 
 FIGURES = {
     "4.11": Figure(
-        "The right arm with its hanging 1.5 kg payload in the three phases: near B, near E and on the way from A to D; "
-        "orange: points A, B, C, green: D, E, F. The book shows photographs of the same phases.",
+        "The simulated right arm with its hanging 1.5 kg payload in the three phases: near B, near E and on the way "
+        "from A to D; orange: points A, B, C, green: D, E, F. The book shows photographs of the same phases.",
         "Three pictures of a red seven-joint arm carrying a small sphere past coloured points.",
     ),
     "4.12": Figure(

@@ -295,4 +295,6 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
     if "lemma" not in recordings:
         return {}
     frame = recordings["lemma"].frames["lemma"]
-    return {"T5.K": frame.groupby(["kind", "reading"])[["error", "fit"]].max().reset_index()}
+    table = frame.groupby(["kind", "reading"])[["error", "fit"]].max().reset_index()
+    names = {"kind": "added columns", "error": "error of the pseudo-inverse [-]", "fit": "error of the fit [-]"}
+    return {"T5.K": table.rename(columns=names)}

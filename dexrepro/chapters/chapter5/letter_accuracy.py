@@ -15,9 +15,9 @@ from dexrepro.primitives import DMP, Demonstration, GaussianKernels, TruncatedKe
 
 FIGURES = {
     "5.3": Figure(
-        "A handwritten A (dashed) and what DMP, DMP+ and IDMP make of it with the same random kernels, 5 above, 20 "
-        "below, for the draw with the median error of the DMP; as in the book. Right: mean squared error over draws of "
-        "the kernels (box: quartiles, whiskers: all draws).",
+        "An A by a synthetic hand (dashed) and what DMP, DMP+ and IDMP make of it with the same random kernels, 5 "
+        "above, 20 below, for the draw with the median error of the DMP; as in the book. Right: mean squared error "
+        "over draws of the kernels (box: quartiles, whiskers: all draws).",
         "With 5 and with 20 kernels the IDMP repeats the letter best, the DMP worst.",
     ),
     "5.A": Figure(
@@ -29,8 +29,8 @@ FIGURES = {
 }
 TABLES = {
     "T5.A": "Mean squared error [cm^2] over random kernels: median, 90 % quantile, deviation from the goal afterwards",
-    "T5.B": "Share of the draws in which one method is better than another",
-    "T5.S": "Sensitivity of the order of methods to what the book does not print",
+    "T5.B": "Share of the draws in which one method is better than another [%]",
+    "T5.S": "Sensitivity of the order of methods to what the book does not print: share of the draws in which it holds",
 }
 METHODS = {"dmp": "DMP", "dmp_plus": "DMP+", "idmp": "IDMP"}
 
@@ -235,15 +235,27 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
     if "default" in recordings:
         tables["T5.A"] = _errors_table(recordings["default"].frames["draws"])
         tables["T5.B"] = _shares_table(metrics["default"], config)
-    columns = ("dmp_plus.beats_dmp", "idmp30.beats_dmp_plus", "idmp60.beats_dmp_plus", "idmp60.after", "ordered")
+    columns = {
+        "dmp_plus.beats_dmp": "DMP+ better than DMP [%]",
+        "idmp30.beats_dmp_plus": "IDMP, m = 30, better than DMP+ [%]",
+        "idmp60.beats_dmp_plus": "IDMP, m = 60, better than DMP+ [%]",
+        "ordered": "IDMP better than DMP+ better than DMP [%]",
+        "idmp60.after": "IDMP, m = 60: distance from goal after T [cm]",
+    }
+    scales = {"idmp60.after": 1.0}
     rows = [
-        {"variant": case, "kernels": count, **{column: values.get(f"n{count}.{column}") for column in columns}}
+        {"variant": case, "kernels": count}
+        | {text: _scaled(values.get(f"n{count}.{key}"), scales.get(key, 100.0)) for key, text in columns.items()}
         for case, values in metrics.items()
         if case in recordings
         for count in config.kernels.counts
     ]
     tables["T5.S"] = pd.DataFrame(rows)
     return tables
+
+
+def _scaled(value: float | int | None, factor: float) -> float | None:
+    return None if value is None else factor * value
 
 
 def _errors_table(draws: pd.DataFrame) -> pd.DataFrame:
@@ -270,6 +282,7 @@ def _shares_table(metrics: Metrics, config: Config) -> pd.DataFrame:
         f"{best}.beats_dmp_plus_equal": "IDMP better than a DMP+ of equal size",
     }
     return pd.DataFrame(
-        {"comparison": text, **{f"{n} kernels": metrics.get(f"n{n}.{key}") for n in config.kernels.counts}}
+        {"comparison": text}
+        | {f"{n} kernels": _scaled(metrics.get(f"n{n}.{key}"), 100.0) for n in config.kernels.counts}
         for key, text in names.items()
     )

@@ -144,10 +144,17 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
     tables = {}
     if "default" in recordings:
         reached = recordings["default"].frames["goals"]
-        tables["T5.E"] = reached.groupby(["blocks", "x", "y"]).clearance.median().unstack("y").reset_index()
-    names = [f"{kind}.{name}" for kind in ("goals2", "goals3") for name in ("clearance", "free", "end_error")]
+        table = reached.groupby(["blocks", "x", "y"]).clearance.median().unstack("y").reset_index()
+        columns = [name if isinstance(name, str) else f"y = {name:g} cm" for name in table]
+        tables["T5.E"] = table.set_axis(columns, axis=1).rename(columns={"x": "x [cm]"})
+    names = {"skill2.last_change": "last change over the first [-]"}
+    for blocks in (2, 3):
+        names |= {
+            f"goals{blocks}.clearance": f"{blocks} blocks: smallest clearance [cm]",
+            f"goals{blocks}.free": f"{blocks} blocks: share of paths that touch nothing",
+            f"goals{blocks}.end_error": f"{blocks} blocks: largest distance from the goal [cm]",
+        }
     tables["T5.F"] = pd.DataFrame(
-        {"variant": case, **{name: values.get(name) for name in ("skill2.last_change", *names)}}
-        for case, values in metrics.items()
+        {"variant": case, **{text: values.get(key) for key, text in names.items()}} for case, values in metrics.items()
     )
     return tables

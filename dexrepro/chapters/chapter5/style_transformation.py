@@ -18,11 +18,10 @@ FIGURES = {
         "The five demonstrated letters a, z, l, k and w.",
     ),
     "5.6": Figure(
-        "The letter a (centre, blue frame; red in the book) turns into four other letters as shared random features "
-        "are added, five at a time, along the diagonals; black frames: demonstrations. Only the weights of the new "
-        "features are learned. "
-        "Right: distance to the target and to the initial letter over the number of added features, median of the "
-        "draws. The book shows the left part.",
+        "Synthetic hand: the letter a (centre, blue frame; red in the book) turns into four other letters as shared "
+        "random features are added, five at a time, along the diagonals; black frames: demonstrations. Only the "
+        "weights of the new features are learned. Right: distance to the target and to the initial letter over the "
+        "number of added features, median of the draws. The book shows the left part.",
         "The shapes leave the letter a gradually and are clearly distinct letters after 30 added features.",
     ),
     "5.B": Figure(
@@ -145,10 +144,17 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
     tables = {}
     if "default" in recordings:
         medians = recordings["default"].frames["errors"].groupby(["letter", "m"]).target.median()
-        tables["T5.C"] = medians.unstack().reset_index()
-    columns = ("start", "first_step", "final", "approaches", "leaves_base", "distinct")
+        tables["T5.C"] = medians.unstack().add_prefix("m = ").reset_index()
+    columns = {
+        "start": "distance to the target, m = 0 [cm]",
+        "final": "distance to the target, all features [cm]",
+        "first_step": "distance left after the first features, smallest share",
+        "approaches": "share of draws that always come nearer",
+        "leaves_base": "share of draws that always leave the base",
+        "distinct": "share of draws nearest to their own letter",
+    }
     tables["T5.D"] = pd.DataFrame(
-        {"variant": case, "letter": letter, **{column: values.get(f"{letter}.{column}") for column in columns}}
+        {"variant": case, "letter": letter, **{text: values.get(f"{letter}.{key}") for key, text in columns.items()}}
         for case, values in metrics.items()
         for letter in config.hand.targets
     )

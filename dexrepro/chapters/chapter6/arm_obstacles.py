@@ -25,17 +25,18 @@ from dexrepro.robots.inverse_kinematics import solve
 
 FIGURES = {
     "6.3": Figure(
-        "The scene from above: two old boxes (orange), the new one (blue), the learned path (grey) and the "
+        "The simulated scene from above: two old boxes (orange), the new one (blue), the learned path (grey) and the "
         "constrained one. The book shows a photograph of the same arrangement.",
         "The learned path runs through the new box, the constrained one round it.",
     ),
     "6.4": Figure(
-        "Arm on the learned path at five instants (contacts off) and the smallest distance of the whole arm to each "
-        "box. The book shows photographs.",
+        "Simulated arm on the learned path at five instants (contacts off) and the smallest distance of the whole arm "
+        "to each box. The book shows photographs.",
         "On the learned path the arm enters the new box.",
     ),
     "6.5": Figure(
-        "Arm on the constrained path at five instants and the smallest distance of the whole arm to each box.",
+        "Simulated arm on the constrained path at five instants and the smallest distance of the whole arm to each "
+        "box.",
         "On the constrained path the whole arm passes all three boxes.",
     ),
 }
@@ -43,8 +44,8 @@ TABLES = {"T6.Sc": "Variants of the detour, the law and the contacts on the arm"
 RATE = 100.0
 BOXES = ("first", "second", "new")
 COLOURS = {"first": (0.95, 0.62, 0.20, 1.0), "second": (0.95, 0.62, 0.20, 1.0), "new": (0.20, 0.50, 0.80, 1.0)}
-TOP = Camera(target=(0.62, -0.32, 0.0), distance=1.15, yaw=0.0, pitch=-89.99, field_of_view=45.0)
-SIDE = Camera(target=(0.5, -0.25, 0.1), distance=1.2, yaw=40.0, pitch=-35.0, field_of_view=45.0)
+TOP = Camera(target=(0.43, -0.25, 0.0), distance=1.27, yaw=0.0, pitch=-89.99, field_of_view=45.0)
+SIDE = Camera(target=(0.42, -0.3, 0.16), distance=1.4, yaw=40.0, pitch=-35.0, field_of_view=45.0)
 FILM = Film(
     "constrained", "The constrained path takes the whole arm round the new, blue box.",
     Camera(target=(0.5, -0.25, 0.13), distance=1.5, yaw=40.0, pitch=-35.0, field_of_view=45.0), "distance_new",
@@ -78,7 +79,7 @@ def simulate(config: Config, rng: Any) -> Recording:
         for i, share in enumerate(config.pictures):
             index = min(int(share * len(run.time)), len(run.time) - 1)
             images[f"{i}_{run.time[index]:.1f}"] = world.render(
-                {"arm": run["arm.position"][index]}, camera=SIDE, size=(360, 300)
+                {"arm": run["arm.position"][index]}, camera=SIDE, size=(540, 450)
             )
         if config.pictures:
             images["top"] = world.render({"arm": run["arm.position"][-1]}, camera=TOP, size=(700, 600))
@@ -224,12 +225,12 @@ def _pixels(points: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
 def _draw_run(run: Recording, numbers: Metrics) -> Any:
     from dexrepro.report import style
 
-    shots = sorted(name for name in run.images if name != "top")
-    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 3.4))
-    grid = figure.add_gridspec(2, len(shots), height_ratios=[1, 1.3])
-    for i, name in enumerate(shots):
+    shots = style.trimmed({name: run.images[name] for name in sorted(run.images) if name != "top"})
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 3.5))
+    grid = figure.add_gridspec(2, len(shots), height_ratios=[1.1, 1.3])
+    for i, (name, image) in enumerate(shots.items()):
         axes = figure.add_subplot(grid[0, i])
-        axes.imshow(run.images[name])
+        axes.imshow(image)
         axes.axis("off")
         style.panel(axes, "abcdef"[i], f"{name.partition('_')[2]} s")
     axes = figure.add_subplot(grid[1, :])

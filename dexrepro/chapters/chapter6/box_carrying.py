@@ -21,9 +21,9 @@ from dexrepro.robots.inverse_kinematics import solve
 
 FIGURES = {
     "6.12": Figure(
-        "Two arms carry a box of 0.6 kg between flat palms, without any grip but friction: rendered instants, distance "
-        "of the box from the middle between the palms, and the smaller palm force. The book shows photographs of the "
-        "constrained case.",
+        "Two simulated arms carry a box of 0.6 kg between flat palms, without any grip but friction: rendered "
+        "instants, distance of the box from the middle between the palms, and the smaller palm force. The book shows "
+        "photographs of the constrained case.",
         "Along the constrained paths the box is carried and put down; along the original ones it is dropped.",
     ),
 }

@@ -241,7 +241,9 @@ def tabulate(
             }
         )
         counts = {
-            name.removeprefix("bars_passed_"): value for name, value in numbers.items() if name.startswith("bars_")
+            name.removeprefix("bars_passed_").removesuffix("mm") + " mm": value
+            for name, value in numbers.items()
+            if name.startswith("bars_")
         }
         if counts:
             bars.append({"method": case, **counts})

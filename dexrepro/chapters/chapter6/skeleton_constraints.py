@@ -19,8 +19,9 @@ FIGURES = {
         "Stick figure of the synthetic person with the box at six instants.",
     ),
     "6.7": Figure(
-        "Distance of the measured joints to the median of ten demonstrations (band from smallest to largest; left "
-        "green, right blue) and the 95th percentiles. The book shows the bands; our noise levels set the ratio.",
+        "Distance of the synthetic person's joints to the median of ten demonstrations (band from smallest to "
+        "largest; left green, right blue) and the 95th percentiles. The book shows the bands; our noise levels set "
+        "the ratio.",
         "The wrists spread about twice as far as the shoulders.",
     ),
     "6.8": Figure(
@@ -28,18 +29,18 @@ FIGURES = {
         "Block diagram: loop 1 restores lengths outwards, then the hands, then loop 2 restores lengths inwards.",
     ),
     "6.9": Figure(
-        "Paths of the six joints: constrained primitives (solid), original primitives (dotted) and stick "
-        "figures at six instants. The book shows the same in three dimensions.",
+        "Paths of the synthetic person's six joints: constrained primitives (solid), original primitives (dotted) and "
+        "stick figures at six instants. The book shows the same in three dimensions.",
         "The constrained arm paths differ from the original ones most at elbows and wrists.",
     ),
     "6.10": Figure(
-        "Link lengths of the original and of the constrained primitives; shaded: the printed 22 and 28 cm with +-1 cm. "
-        "The book prints ranges of [12, 52] and [25, 39] cm for the original left arm.",
+        "Synthetic person: link lengths of the original and of the constrained primitives; shaded: the printed 22 and "
+        "28 cm with +-1 cm. The book prints ranges of [12, 52] and [25, 39] cm for the original left arm.",
         "The constrained links keep their lengths within the margin, the original ones do not.",
     ),
     "6.11": Figure(
-        "Distance of the hands; shaded: 33 +- 1 cm. The book prints [34, 57] cm for the original and [24, 25] cm for "
-        "the constrained primitives, which is outside of its own band.",
+        "Synthetic person: distance of the hands; shaded: 33 +- 1 cm. The book prints [34, 57] cm for the original "
+        "and [24, 25] cm for the constrained primitives, which is outside of its own band.",
         "The constrained hand distance stays near the box's length.",
     ),
 }

@@ -104,13 +104,13 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     from dexrepro.report import style
 
     figure, (contact, push, bars) = style.subplots(1, 3, height=2.7)
-    lines = {"muscle": ("book", "muscle"), "low": ("extra1", "constant low"),
-             "muscle_plain": ("rival", "muscle, no estimation"), 
-             "low_plain": ("plain", "low, no estimation")}  # fmt: skip
+    lines = {"muscle": (style.BOOK, "-", "muscle"), "low": (style.EXTRA[0], ":", NAMES["low"]),
+             "muscle_plain": (style.BOOK, "--", "muscle, no estimation"),
+             "low_plain": (style.EXTRA[0], "--", f"{NAMES['low']}, no estimation")}  # fmt: skip
     start, end = config.pushes.before
-    for case, (line, label) in lines.items():
+    for case, (colour, line, label) in lines.items():
         recording = recordings[case]
-        look = {**style.LINES[line], "linewidth": 2.4 if case == "muscle" else 1.1}
+        look: Any = {"color": colour, "linestyle": line, "linewidth": 2.6 if case == "muscle" else 1.2}
         contact.plot(recording.time, recording["contact"], label=label, **look)
         window = recording.between(start - 0.1, end + 0.3)
         free = 1e3 * (recording["arm.tip"] - recording["planned"])[:, 1]

@@ -104,7 +104,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     axes[0].legend(loc="upper right", fontsize=6.5)
     spectrum = recordings["per_coordinate"].frames["spectrum"]
     names = ("along", "lateral", "vertical")
-    for column, name, line in zip(spectrum.columns, names, ("extra1", "extra2", "book")):
+    for column, name, line in zip(spectrum.columns, names, ("extra1", "extra2", "extra3")):
         axes[2].semilogy(spectrum.index + 1, spectrum[column], marker=".", label=name, **style.LINES[line])
     axes[2].set(xlabel="Component [-]", ylabel="Singular value [cm]", xticks=range(1, 7))
     axes[2].legend()

@@ -234,7 +234,7 @@ def tabulate(
     return {
         "T8.1": _parameters(config),
         "T8.A": pd.DataFrame(rows),
-        "T8.Sa": sensitivity_table(VARIANTS, metrics),
+        "T8.Sa": sensitivity_table(VARIANTS, metrics, columns),
     }
 
 

@@ -40,6 +40,34 @@ def iterates(gain: LearnedGain, model: InteractionModel) -> pd.DataFrame:
     )
 
 
+ITERATES = {
+    "gain_x": "K_x [N/m]",
+    "gain_s": "K_s [{unit}]",
+    "next_x": "next K_x [N/m]",
+    "next_s": "next K_s [{unit}]",
+    "p11": "P_11",
+    "p12": "P_12",
+    "p22": "P_22",
+    "change": "change of P",
+    "condition": "condition number",
+    "optimal_x": "optimal K_x [N/m]",
+    "optimal_s": "optimal K_s [{unit}]",
+}
+NOISE = {
+    "quantity": "noise on",
+    "noise": "standard deviation [N or m]",
+    "mean_x": "mean K_x [N/m]",
+    "mean_s": "mean K_s [{unit}]",
+    "std_x": "deviation of K_x [N/m]",
+    "std_s": "deviation of K_s [{unit}]",
+}
+
+
+def headed(frame: pd.DataFrame, unit: str) -> pd.DataFrame:
+    """Iterates or noise study as a table; ``unit`` is that of K_s."""
+    return frame.rename(columns={key: text.format(unit=unit) for key, text in (ITERATES | NOISE).items()})
+
+
 def learn(gain: LearnedGain, windows: Windows) -> Array:
     """Gain [N/m, N] that Algorithm 8.1 finds from other data with the settings of ``gain``; nan where it fails."""
     try:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.chapters.chapter8 import learning_study
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING, soft_transfer
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain
@@ -15,8 +16,8 @@ from dexrepro.experiment import Config, Metrics, Recording
 
 METHODS = {
     "soft": ("proposed, soft", "book"),
-    "abrupt": ("abrupt", "rival"),
-    "lqr": ("LQR, wrong model", "plain"),
+    "abrupt": ("abrupt", "extra3"),
+    "lqr": ("LQR, wrong model", "rival"),
     "lqr_true": ("LQR, true model", "extra1"),
     "hold": ("$K_0$ kept", "extra2"),
 }
@@ -146,7 +147,7 @@ def _draw_gain(recordings: Any, metrics: Any, config: Config) -> Any:
     start, end = metrics["soft"]["touched_at"], metrics["soft"]["left_at"]
     for index, (row, key, unit) in enumerate(zip(grid, "xs", ("N/m", "N"))):
         best = steps[f"optimal_{key}"].iloc[0]
-        for run, (name, line) in ((soft, ("$K_m$, proposed", "book")), (lqr, ("$K_l$, LQR, wrong model", "plain"))):
+        for run, (name, line) in ((soft, ("$K_m$, proposed", "book")), (lqr, ("$K_l$, LQR, wrong model", "rival"))):
             row[0].plot(run.time, run["gain"][:, index], label=name, **style.LINES[line])
         row[0].axhline(best, label="optimum of the true object", **style.LINES["reference"])
         row[0].set(ylabel=f"$K_{key}$ [{unit}]", xlim=(start, end))
@@ -225,21 +226,23 @@ VARIANTS = (
 def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
-    columns = ("bound_used", "max_error_x", "max_error_y", "force_jump", "force_rate", "reference_speed", "oscillation",
-               "fraction", "fraction_theory", "final_cost", "contact_cost", "gain_x", "gain_s", "gain_error_x",
-               "gain_error_s", "iterations", "violated_at")  # fmt: skip
+    columns = {"bound_used": "share of the bound used", "max_error_x": "largest z_1x [mm]",
+               "max_error_y": "largest z_1y [mm]", "force_jump": "force jump [N]", "force_rate": "force rate [N/s]",
+               "reference_speed": "reference speed [m/s]", "oscillation": "oscillation [mm]",
+               "fraction": "x/x_d late in the contact [-]", "fraction_theory": "x/x_d, closed form [-]",
+               "final_cost": "cost rate at rest, closed form [1/m^2]", "contact_cost": "cost of the contact",
+               "gain_x": "K_x [N/m]", "gain_s": "K_s [N]", "gain_error_x": "error of K_x [-]",
+               "gain_error_s": "error of K_s [-]", "iterations": "iterations",
+               "violated_at": "violated at [s]"}  # fmt: skip
     rows = [
-        {"case": case, **{name: metrics[case].get(name) for name in columns}} for case in recordings if case in metrics
+        {"case": case, **{text: metrics[case].get(name) for name, text in columns.items()}}
+        for case in recordings
+        if case in metrics
     ]
-    names = {"bound_used": "share of the bound used", "max_error_x": "largest z_1x [mm]",
-             "max_error_y": "largest z_1y [mm]", "force_jump": "force jump [N]", "force_rate": "force rate [N/s]",
-             "reference_speed": "reference speed [m/s]", "gain_x": "K_x [N/m]", "gain_s": "K_s [N]",
-             "gain_error_x": "error of K_x [-]", "gain_error_s": "error of K_s [-]",
-             "violated_at": "violated at [s]", "oscillation": "oscillation [mm]"}  # fmt: skip
-    tables = {"T8.B": pd.DataFrame(rows).rename(columns=names), "T8.Sb": sensitivity_table(VARIANTS, metrics)}
+    tables = {"T8.B": pd.DataFrame(rows), "T8.Sb": sensitivity_table(VARIANTS, metrics, columns)}
     if "soft" in recordings:
         frames = recordings["soft"].frames
-        tables["T8.2"] = frames["iterates"]
-        tables["T8.C"] = frames["noise"]
-        tables["T8.D"] = frames["assumptions"][["assumption", "gain_x", "gain_s"]]
+        tables["T8.2"] = learning_study.headed(frames["iterates"], "N")
+        tables["T8.C"] = learning_study.headed(frames["noise"], "N")
+        tables["T8.D"] = learning_study.headed(frames["assumptions"][["assumption", "gain_x", "gain_s"]], "N")
     return tables

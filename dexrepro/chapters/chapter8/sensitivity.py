@@ -20,8 +20,13 @@ class Variant(NamedTuple):
     base: tuple[str, str | float]
 
 
-def sensitivity_table(variants: Iterable[Variant], metrics: Mapping[str, Metrics]) -> pd.DataFrame:
-    """One row a variant: both numbers as run and as varied, and whether the comparison turns around."""
+def sensitivity_table(
+    variants: Iterable[Variant], metrics: Mapping[str, Metrics], names: Mapping[str, str]
+) -> pd.DataFrame:
+    """One row a variant: both numbers as run and as varied, and whether the comparison turns around.
+
+    names: what each metric is called, with its unit.
+    """
     rows = []
     for variant in variants:
         base, varied = _pair(variant.base, variant.metric, metrics), _pair(variant.varied, variant.metric, metrics)
@@ -31,12 +36,12 @@ def sensitivity_table(variants: Iterable[Variant], metrics: Mapping[str, Metrics
             {
                 "claim": variant.claim,
                 "variant": variant.what,
-                "metric": variant.metric,
-                "as_run": base[0],
-                "as_run_rival": base[1],
+                "quantity": names[variant.metric],
+                "as run": base[0],
+                "rival, as run": base[1],
                 "varied": varied[0],
-                "varied_rival": varied[1],
-                "flips": "yes" if (base[0] < base[1]) != (varied[0] < varied[1]) else "no",
+                "rival, varied": varied[1],
+                "verdict changes": "yes" if (base[0] < base[1]) != (varied[0] < varied[1]) else "no",
             }
         )
     return pd.DataFrame(rows)

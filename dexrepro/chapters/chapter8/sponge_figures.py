@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.chapters.chapter8 import learning_study
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
@@ -173,29 +174,27 @@ VARIANTS = (
 def tabulate(
     recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
 ) -> dict[str, pd.DataFrame]:
-    columns = ("final_compression", "final_force", "peak_compression", "peak_force", "max_error_x", "max_error_y",
-               "max_error_z", "bound_used", "gain_x", "gain_s", "gain_error", "iterations", "nodes_d", "nodes_c",
-               "nodes_g", "peak_torque", "stopped_at")  # fmt: skip
+    columns = {"final_compression": "final compression [mm]", "final_force": "final force [N]",
+               "peak_compression": "peak compression [mm]", "peak_force": "peak force [N]",
+               "max_error_x": "largest z_1x [mm]", "max_error_y": "largest z_1y [mm]",
+               "max_error_z": "largest z_1z [mm]", "bound_used": "share of the bound used", "gain_x": "K_x [N/m]",
+               "gain_s": "K_s [N/m]", "gain_error": "error of the gain [-]", "iterations": "iterations",
+               "nodes_d": "nodes for D", "nodes_c": "nodes for C", "nodes_g": "nodes for G",
+               "peak_torque": "peak torque [N m]", "stopped_at": "stopped at [s]"}  # fmt: skip
     rows = [
-        {"case": case, "stiffness": config.cases[case].sponge.stiffness}
-        | {name: metrics[case].get(name) for name in columns}
+        {"case": case, "stiffness [N/m]": config.cases[case].sponge.stiffness}
+        | {text: metrics[case].get(name) for name, text in columns.items()}
         for case in recordings
         if case in metrics
     ]
     ends = {
         f"{case}_end": {"peak_compression": metrics[case].get("final_compression")} for case in _BASE if case in metrics
     }
-    names = {"stiffness": "stiffness [N/m]", "final_compression": "final compression [mm]",
-             "final_force": "final force [N]", "peak_compression": "peak compression [mm]",
-             "peak_force": "peak force [N]", "max_error_x": "largest z_1x [mm]", "max_error_y": "largest z_1y [mm]",
-             "max_error_z": "largest z_1z [mm]", "bound_used": "share of the bound used", "gain_x": "K_x [N/m]",
-             "gain_s": "K_s [N/m]", "gain_error": "error of the gain [-]", "peak_torque": "peak torque [N m]",
-             "stopped_at": "stopped at [s]"}  # fmt: skip
     tables = {
-        "T8.E": pd.DataFrame(rows).rename(columns=names),
-        "T8.Sc": sensitivity_table(VARIANTS, {**metrics, **ends}),
+        "T8.E": pd.DataFrame(rows),
+        "T8.Sc": sensitivity_table(VARIANTS, {**metrics, **ends}, columns),
     }
     if "learned" in recordings:
-        tables["T8.F"] = recordings["learned"].frames["iterates"]
-        tables["T8.G"] = recordings["learned"].frames["noise"]
+        tables["T8.F"] = learning_study.headed(recordings["learned"].frames["iterates"], "N/m")
+        tables["T8.G"] = learning_study.headed(recordings["learned"].frames["noise"], "N/m")
     return tables
