@@ -92,8 +92,13 @@ def write_yaml(path: Path, data: Any) -> None:
 
 def write_json(path: Path, data: Any) -> None:
     """Write JSON in one move; numbers that are not finite become null."""
+    write_text(path, json.dumps(finite(data), indent=1) + "\n")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file in one move: the old text or the new, never a part."""
     temporary = path.with_name(f".{path.name}-{_owner()}")
-    temporary.write_text(json.dumps(finite(data), indent=1) + "\n")
+    temporary.write_text(text)
     temporary.replace(path)
 
 

@@ -36,7 +36,7 @@ from dexrepro.config import (
 from dexrepro.experiment import Claim, Config, Metrics
 from dexrepro.pool import pool
 from dexrepro.runner import flat, generator, live, summarise
-from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json
+from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
 
 
 def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list[str]:
@@ -165,7 +165,7 @@ def run(
             future.result()
     with locked(_locks(results)):  # who ends last sees every sample
         entries = _kept(chapter, experiment, results).values()
-        _lines(target).write_text("".join(map(_line, entries)))
+        write_text(_lines(target), "".join(map(_line, entries)))
         write_json(target, summary(chapter, experiment, list(entries)))
     return target
 
