@@ -301,19 +301,28 @@ def _print_check(report: dict[str, Any]) -> None:
 
 def draw_command(options: argparse.Namespace) -> int:
     """Draw figures and tables again from what is on disk."""
+    from dexrepro.plan import select
     from dexrepro.report.damage import check_result
-    from dexrepro.runner import redraw
+    from dexrepro.runner import redraw, sentence
     from dexrepro.selection import existing, selected
 
     numbers, only, results, _, _ = selected(options.selection)
-    folders = [path.parent for number in numbers for path in existing(results).glob(f"chapter{number}/*/run.json")]
-    if not (chosen := [folder for folder in folders if not only or folder.name in only]):
+    found = [(n, e, existing(results) / f"chapter{n}" / e.name) for n in numbers for e in select(n, only or None, None)]
+    found = [item for item in found if (item[2] / "run.json").exists()]
+    if not found:
         raise InputError(f"there is no such result in {results}; run first: dexrepro run {' '.join(options.selection)}")
-    for folder in chosen:
+    for _, _, folder in found:
         check_result(folder, "metrics.json", "config.yaml", series=True)
-    for folder in redraw(numbers, results, only):
-        out.print(str(folder), markup=False)
-    return OK
+    status = OK
+    for number, experiment, folder in found:
+        try:
+            redraw(number, experiment, folder)
+        except Exception as error:  # a result of another version, say; the others can still be drawn
+            err.print(f"{folder} cannot be drawn, run it again: {sentence(error)}", markup=False)
+            status = FAILED
+        else:
+            out.print(str(folder), markup=False)
+    return status
 
 
 def report_command(options: argparse.Namespace) -> int:

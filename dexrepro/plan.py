@@ -31,6 +31,8 @@ from dexrepro.config import (
 from dexrepro.experiment import Experiment
 from dexrepro.storage import digest_of
 
+# Modules that change no result.
+COMMANDS = ("cli.py", "baselines.py", "progress.py", "study.py", "scaffold.py", "selection.py", "sweep.py")
 NUMERICAL = ("numpy", "scipy", "pybullet")  # packages whose version can change a number
 
 
@@ -194,9 +196,7 @@ def source_digest(chapter: str, with_report: bool = False) -> str:
         parts = path.relative_to(root).parts
         if parts[0] == "chapters" and len(parts) > 2 and parts[1] not in (chapter, f"chapter{chapter}"):
             continue
-        if parts[0] in ("cli.py", "baselines.py", "progress.py", "study.py", "scaffold.py", "sweep.py") or (
-            parts[0] == "report" and not with_report
-        ):
+        if parts[0] in COMMANDS or (parts[0] == "report" and not with_report):
             continue
         digest.update(str(parts).encode() + path.read_bytes())
     return digest.hexdigest()

@@ -12,7 +12,7 @@ import subprocess
 import time
 import traceback
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
@@ -26,7 +26,7 @@ import numpy as np
 from dexrepro import __version__, chapters
 from dexrepro.config import InputError
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
-from dexrepro.plan import Job, Plan, select
+from dexrepro.plan import Job, Plan
 from dexrepro.pool import pool
 from dexrepro.progress import Progress, Silent
 from dexrepro.storage import (
@@ -194,17 +194,11 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
                 style.save(figure, folder / "figures", identifier)
 
 
-def redraw(numbers: Sequence[str], results: Path, only: Sequence[str] = ()) -> Iterator[Path]:
-    """Present again every result there is of some chapters; yields their folders. Nothing is simulated."""
-    for number in numbers:
-        for experiment in select(number, list(only) or None, None):
-            target = results / f"chapter{number}" / experiment.name
-            if not (target / "run.json").exists():
-                continue
-            with whole_folder(target) as folder:
-                shutil.copytree(target, folder, dirs_exist_ok=True, copy_function=_link)
-                present(number, experiment, folder)
-            yield target
+def redraw(chapter: str, experiment: Experiment, target: Path) -> None:
+    """Present again a result from its files alone; where that fails, it stays as it was."""
+    with whole_folder(target) as folder:
+        shutil.copytree(target, folder, dirs_exist_ok=True, copy_function=_link)
+        present(chapter, experiment, folder)
 
 
 def flat(experiment: str, nested: Mapping[str, Metrics]) -> Metrics:
@@ -306,7 +300,7 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
                 except BrokenProcessPool:
                     outcome.failures[name] = "its process was killed; the same command completes what is missing"
                 except BaseException as error:
-                    outcome.failures[name] = _sentence(error)
+                    outcome.failures[name] = sentence(error)
                     _keep_traceback(task, error)
                 else:
                     if isinstance(task, Plan):
@@ -332,7 +326,8 @@ def _up_to_date(plan: Plan) -> bool:
         return False
 
 
-def _sentence(error: BaseException) -> str:
+def sentence(error: BaseException) -> str:
+    """What went wrong, in one line."""
     text = " ".join(str(error).split())
     return text if isinstance(error, InputError) else f"{type(error).__name__}: {text}"
 

@@ -106,6 +106,19 @@ def test_a_damaged_result_is_named(
     assert sorted(Path("results").rglob("*.*")) == left
 
 
+def test_a_result_that_cannot_be_drawn_is_named_and_stays(
+    result: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def lacking(*_: object) -> None:
+        raise AttributeError("no configuration key 'demonstrations'")
+
+    monkeypatch.setattr("dexrepro.runner.present", lacking)
+    before = {path: path.read_bytes() for path in result.rglob("*.*")}
+    assert cli.main(["draw"]) == 1
+    assert "decay cannot be drawn, run it again: AttributeError: no configuration key" in capsys.readouterr().err
+    assert {path: path.read_bytes() for path in result.rglob("*.*")} == before
+
+
 @pytest.mark.parametrize(
     ("command", "sentence"),
     [
