@@ -158,15 +158,16 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
     from dexrepro.runner import Outcome, run_plans
-    from dexrepro.selection import chapters_of, positive_workers
+    from dexrepro.selection import chapters_of, of_chapter, positive_workers
 
     numbers, rest = chapters_of(overrides, extra_dir)
     plans: list[Any] = []
     skipped: dict[str, str] = {}
     settings: dict[str, Any] = {}
     for number in numbers:
-        settings = compose_chapter(number, rest, extra_dir)
-        chapter_plans, chapter_skipped = plan_chapter(number, rest, composed=settings)
+        own = of_chapter(number, numbers, rest)
+        settings = compose_chapter(number, own, extra_dir)
+        chapter_plans, chapter_skipped = plan_chapter(number, own, composed=settings)
         plans += chapter_plans
         skipped |= chapter_skipped
     quiet = bool(settings.get("quiet"))

@@ -91,6 +91,19 @@ def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[s
     return list(dict.fromkeys(owner[name] for name in named if name in owner))
 
 
+def of_chapter(number: str, numbers: Sequence[str], overrides: Sequence[str]) -> list[str]:
+    """The overrides for one of several chapters: ``only=a,b`` as a list without the experiments of the others."""
+    others = {e.name for other in numbers if other != number for e in chapters.load(other).experiments}
+    result = []
+    for text in overrides:
+        key, _, value = text.partition("=")
+        if key == "only" and "," in value:
+            names = [name.strip("'\" ") for name in value.strip("[]").split(",")]
+            text = f"only=[{','.join(name for name in names if name not in others)}]"
+        result.append(text)
+    return result
+
+
 def checked_chapter(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
     """Refuse what no job of a sweep could use, before Hydra starts any; the chapter where overrides only imply it."""
     numbers, rest = chapters_of(overrides, extra_dir)
