@@ -131,7 +131,7 @@ COMMANDS = [line.partition("#")[0].strip() for line in block("sh", "dexrepro lis
 @pytest.mark.parametrize("command", [command for command in COMMANDS if " study " not in command])
 def test_every_command_is_understood(shell: Shell, command: str) -> None:
     """Every command of the list; those that simulate in full elsewhere only show their configuration here."""
-    needs_results = {"dexrepro check": 2, "dexrepro render": 2}
+    needs_results = {"dexrepro check": 2, "dexrepro draw": 2, "dexrepro render": 2}
     if command.startswith("dexrepro run") and "--cfg" not in command:
         command = command.replace(" -m", "").replace("'seed=range(3)'", "") + " --cfg job"
     done = shell(command)
