@@ -157,6 +157,6 @@ def test_a_file_that_cannot_be_written_is_named(
     assert capsys.readouterr().err == "dexrepro: results/report: No space left on device\n"
 
 
-def test_check_of_one_experiment_needs_no_other(result: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("dexrepro.baselines.baseline_dir", lambda: tmp_path / "none")
-    assert cli._dispatch(["check", "only=decay"]) == 1, "metrics without a baseline are drift"
+def test_check_of_one_experiment_needs_no_other(toy: Path) -> None:
+    assert cli.main(["check", "chapter=90"]) == 2, "nothing has been run"
+    assert cli.main(["check", "only=needs_more"]) == 0, "it is skipped here, and decay was not asked for"

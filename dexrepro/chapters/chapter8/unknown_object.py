@@ -167,7 +167,8 @@ def _tracking(recording: Recording, config: Config) -> Metrics:
 def _transfer(recording: Recording, config: Config) -> Metrics:
     """Jump of the desired force by the gain alone; what follows the change of gain.
 
-    force_rate, reference_speed: largest. oscillation: way of the indentation beyond one press and release [mm].
+    force_rate, reference_speed: largest. oscillation: way of the indentation beyond one press and release [mm]; None
+    where the run was stopped at its bound, for what is cut off cannot oscillate.
     """
     contact, phase = _contact(recording), recording["phase"]
     indentation = recording["arm.tip"][:, 0] - config.object.surface
@@ -179,13 +180,14 @@ def _transfer(recording: Recording, config: Config) -> Metrics:
     near = recording.between(start - 0.2, start + config.watched) & contact
     rate = np.gradient(recording["object.x"], config.step)
     depth = 1e3 * indentation[near]
-    travel = float(np.abs(np.diff(depth)).sum() - (2.0 * depth.max() - depth[0] - depth[-1])) if near.any() else 0.0
+    whole = recording.status == "finished" and near.any()
+    travel = float(np.abs(np.diff(depth)).sum() - (2.0 * depth.max() - depth[0] - depth[-1])) if whole else 0.0
     return {
         "switch_at": float(start),
         "force_jump": float(jump[contact[:-1]].max()) if contact[:-1].any() else None,
         "force_rate": float(np.abs(rate[near]).max()) if near.any() else None,
         "reference_speed": float(np.abs(recording["reference_speed"][near]).max()) if near.any() else None,
-        "oscillation": max(travel, 0.0),
+        "oscillation": max(travel, 0.0) if whole else None,
     }
 
 
