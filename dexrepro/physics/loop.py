@@ -6,19 +6,31 @@ import time as wall
 from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 import pybullet as bullet
 from numpy.typing import NDArray
 
 from dexrepro.experiment import Recording
-from dexrepro.physics.plant import Controller, SimulatedArm
-
-if TYPE_CHECKING:
-    from dexrepro.physics.world import World
+from dexrepro.physics.elements import Element, Ends
+from dexrepro.physics.plant import Controller, RigidBody, SimulatedArm
 
 GUARD = 1e3  # sum of an arm's joint angles and rates [rad, rad/s] beyond which a run has diverged
+
+
+class Stage(Ends, Protocol):
+    """What stands in a world, and its clock: ``step`` and ``time`` [s], ``gui`` whether a window is open."""
+
+    step: float
+    time: float
+    gui: bool
+    client: int
+    arms: dict[str, SimulatedArm]
+    elements: list[Element]
+
+    @property
+    def moving(self) -> dict[str, RigidBody]: ...
 
 
 class Progress:
@@ -75,7 +87,7 @@ class Probes:
 
 
 def run(
-    world: World,
+    world: Stage,
     duration: float,
     controllers: Mapping[str, Controller],
     control_period: float | None,
@@ -141,7 +153,7 @@ class _Scene:
 
     def __init__(
         self,
-        world: World,
+        world: Stage,
         controllers: Mapping[str, Controller],
         probes: Mapping[str, Callable[[], Any]],
         period: float,

@@ -10,8 +10,9 @@ import pybullet as bullet
 from numpy.typing import NDArray
 
 from dexrepro.physics.loading import connect, load_arm
-from dexrepro.physics.plant import EndPoint, rotated
+from dexrepro.physics.plant import EndPoint
 from dexrepro.robots.arm import Arm
+from dexrepro.robots.rotations import rotated
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 Array = NDArray[np.float64]
 
