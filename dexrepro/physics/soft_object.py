@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pybullet as bullet
 
+from dexrepro.arrays import Real
+from dexrepro.physics.elements import Ends
 from dexrepro.physics.plant import RigidBody, SimulatedArm
 from dexrepro.robots.rotations import rotated
 
@@ -23,14 +24,14 @@ class Cushion:
     """
 
     def __init__(
-        self, stiffness: Any, dt: float, *, fast: float, slow: float, fast_time: float, slow_time: float
+        self, stiffness: Real, dt: float, *, fast: float, slow: float, fast_time: float, slow_time: float
     ) -> None:
         self.side, self.fast, self.slow = 2.0 * stiffness, fast, slow
         self.fast_share, self.slow_share = -math.expm1(-dt / fast_time), -math.expm1(-dt / slow_time)
-        self.fast_state: Any = 0.0
-        self.slow_state: Any = 0.0
+        self.fast_state: Real = 0.0
+        self.slow_state: Real = 0.0
 
-    def force(self, compression: Any, scale: Any = 1.0) -> Any:
+    def force(self, compression: Real, scale: Real = 1.0) -> Real:
         """Force [N] of a compression [m], the elastic branch multiplied by ``scale``; one call a time step."""
         self.fast_state = self.fast_state + self.fast_share * (compression - self.fast_state)
         self.slow_state = self.slow_state + self.slow_share * (compression - self.slow_state)
@@ -68,7 +69,7 @@ class SoftObject:
         self.scale = scale
         self.forces, self.slip = [0.0, 0.0], 0.0
 
-    def bind(self, world: Any) -> Callable[[float], None]:
+    def bind(self, world: Ends) -> Callable[[float], None]:
         ends = [world.arm(name) for name in self.arms]
         body = world.bodies[self.body]
         anchors: list[Vector | None] = [None, None]

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array
 
 
 def rotation_error(desired: ArrayLike, actual: ArrayLike) -> Array:
@@ -49,7 +47,7 @@ def rotation_matrix(vector: Array) -> Array:
     return result
 
 
-def cross(a: Any, b: Any) -> Array:
+def cross(a: Sequence[float] | Array, b: Sequence[float] | Array) -> Array:
     """Cross product of two vectors (3,), faster than numpy's for one pair."""
     (x, y, z), (u, v, w) = a, b
     return np.array((y * w - z * v, z * u - x * w, x * v - y * u))
