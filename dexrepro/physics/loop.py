@@ -6,7 +6,7 @@ import time as wall
 from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 import pybullet as bullet
@@ -14,13 +14,26 @@ from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array
 from dexrepro.experiment import Recording
-from dexrepro.physics.plant import Command, Controller, SimulatedArm
-
-if TYPE_CHECKING:
-    from dexrepro.physics.world import World
+from dexrepro.physics.elements import Element, Ends
+from dexrepro.physics.plant import Command, Controller, RigidBody, SimulatedArm
 
 Probe = Callable[[], ArrayLike]
 GUARD = 1e3  # sum of an arm's joint angles and rates [rad, rad/s] beyond which a run has diverged
+
+
+class Stage(Ends, Protocol):
+    """What stands in a world, and its clock: ``step`` and ``time`` [s], ``gui`` whether a window is open."""
+
+    step: float
+    time: float
+    gui: bool
+    client: int
+    arms: dict[str, SimulatedArm]
+    elements: list[Element]
+
+    @property
+    def moving(self) -> dict[str, RigidBody]:
+        """Rigid bodies that are not static."""
 
 
 class Progress:
@@ -79,7 +92,7 @@ class Probes:
 
 
 def run(
-    world: World,
+    world: Stage,
     duration: float,
     controllers: Mapping[str, Controller],
     control_period: float | None,
@@ -145,7 +158,7 @@ class _Scene:
 
     def __init__(
         self,
-        world: World,
+        world: Stage,
         controllers: Mapping[str, Controller],
         probes: Mapping[str, Probe],
         period: float,

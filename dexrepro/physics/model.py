@@ -10,8 +10,9 @@ import pybullet as bullet
 
 from dexrepro.arrays import Array
 from dexrepro.physics.loading import connect, load_arm
-from dexrepro.physics.plant import EndPoint, rotated
+from dexrepro.physics.plant import EndPoint
 from dexrepro.robots.arm import Arm
+from dexrepro.robots.rotations import rotated
 
 
 class RigidBodyModel:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from dexrepro.arrays import Array, Mask, Real
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 
 class PlanarPairs:

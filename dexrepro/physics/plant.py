@@ -18,7 +18,9 @@ from dexrepro.arrays import Array
 from dexrepro.physics.loading import load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import PlanarTip, forward, jacobian
+from dexrepro.robots.kinematics import forward, jacobian
+from dexrepro.robots.planar import PlanarTip
+from dexrepro.robots.rotations import rotated
 
 
 class Point:
@@ -344,11 +346,3 @@ class EndPoint:
         self.rotation = axes.T @ local[:3, :3]
         self.from_com: tuple[float, ...] = tuple((axes.T @ (local[:3, 3] - info[3])).tolist())
         self.for_jacobian: tuple[float, ...] = tuple((axes.T @ local[:3, 3]).tolist())
-
-
-def rotated(quaternion: tuple[float, ...], vector: tuple[float, ...]) -> tuple[float, float, float]:
-    """A vector turned by a quaternion (x, y, z, w): v + 2 u x (u x v + w v)."""
-    i, j, k, w = quaternion
-    a, b, c = vector
-    x, y, z = j * c - k * b + w * a, k * a - i * c + w * b, i * b - j * a + w * c
-    return a + 2 * (j * z - k * y), b + 2 * (k * x - i * z), c + 2 * (i * y - j * x)
