@@ -181,6 +181,7 @@ def solve(
     task: str = "position",
     rest: ArrayLike | None = None,
     rest_gain: float = 0.0,
+    settle: int = 0,
     damping: float = 1e-2,
     tolerance: float = 1e-6,
     restarts: int = 20,
@@ -189,8 +190,8 @@ def solve(
     """Joint angles (n,) [rad] that put the end point (3,) [m], rotation (3, 3) where asked, within the joint limits.
 
     Starts from ``start`` (by default mid-range) and, where that fails, from random angles; the damping, at most
-    ``damping``, shrinks with the error. tolerance: of the norm of
-    the task error [m, rad]. Raises Unreachable with the best error found.
+    ``damping``, shrinks with the error. settle: steps for which the pull towards ``rest`` goes on in any case.
+    tolerance: of the norm of the task error [m, rad]. Raises Unreachable with the best error found.
     """
     lower, upper = np.maximum(arm.lower, -np.pi), np.minimum(arm.upper, np.pi)
     rng = np.random.default_rng(seed)
@@ -200,19 +201,26 @@ def solve(
     for attempt in range(restarts + 1):
         follower.damping = damping
         follower.reset(first if attempt == 0 else rng.uniform(lower, upper))
-        for iteration in range(200):
+        for iteration in range(settle + 200):
             before = follower.position
             follower(position, rotation)
             size = float(np.linalg.norm(follower.error))
             best = min(best, size)
             follower.damping = min(damping, size)
-            if size < tolerance:
+            if size < tolerance and iteration >= settle:
                 turns = 2 * np.pi * np.round(before / (2 * np.pi))
                 return before - np.where(np.isinf(arm.upper), turns, 0.0)
-            if iteration == 150:
+            if iteration == settle + 150:
                 follower.rest_gain = 0.0
         follower.rest_gain = rest_gain
     raise Unreachable(f"arm '{arm.name}' comes no closer than {best:.2g} to the {task} asked of it")
+
+
+def nearest(
+    arm: Arm, posture: ArrayLike, position: Place, rotation: ArrayLike | None = None, task: str = "pose"
+) -> Array:
+    """Of all joint angles (n,) [rad] that put the end point where asked, those nearest to a posture; see ``solve``."""
+    return solve(arm, position, rotation, posture, task, posture, rest_gain=0.1, settle=200)
 
 
 class _Description:
