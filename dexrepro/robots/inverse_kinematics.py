@@ -181,6 +181,7 @@ def solve(
     task: str = "position",
     rest: ArrayLike | None = None,
     rest_gain: float = 0.0,
+    gain: float = 1.0,
     settle: int = 0,
     damping: float = 1e-2,
     tolerance: float = 1e-6,
@@ -190,12 +191,14 @@ def solve(
     """Joint angles (n,) [rad] that put the end point (3,) [m], rotation (3, 3) where asked, within the joint limits.
 
     Starts from ``start`` (by default mid-range) and, where that fails, from random angles; the damping, at most
-    ``damping``, shrinks with the error. settle: steps for which the pull towards ``rest`` goes on in any case.
-    tolerance: of the norm of the task error [m, rad]. Raises Unreachable with the best error found.
+    ``damping``, shrinks with the error. gain: share of a Newton step taken at once. settle: steps for which the pull
+    towards ``rest`` goes on in any case. tolerance: of the norm of the task error [m, rad].
+
+    Raises Unreachable with the best error found.
     """
     lower, upper = np.maximum(arm.lower, -np.pi), np.minimum(arm.upper, np.pi)
     rng = np.random.default_rng(seed)
-    follower = InverseKinematics(arm, task, 1.0, 1.0, damping, rest, rest_gain)
+    follower = InverseKinematics(arm, task, gain, 1.0, damping, rest, rest_gain)
     best = np.inf
     first = (lower + upper) / 2 if start is None else np.asarray(start, dtype=float)
     for attempt in range(restarts + 1):
@@ -219,8 +222,11 @@ def solve(
 def nearest(
     arm: Arm, posture: ArrayLike, position: Place, rotation: ArrayLike | None = None, task: str = "pose"
 ) -> Array:
-    """Of all joint angles (n,) [rad] that put the end point where asked, those nearest to a posture; see ``solve``."""
-    return solve(arm, position, rotation, posture, task, posture, rest_gain=0.1, settle=200)
+    """Of all joint angles (n,) [rad] that put the end point where asked, those nearest to a posture; see ``solve``.
+
+    Steps are small: whole ones can end in another branch, with wrist or elbow turned over.
+    """
+    return solve(arm, position, rotation, posture, task, posture, rest_gain=0.1, gain=0.3, settle=200)
 
 
 class _Description:

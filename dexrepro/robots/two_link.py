@@ -35,11 +35,12 @@ class TwoLink:
         x, y = self._second * math.cos(b), self._second * math.sin(b)
         return np.array([[-self._first * math.sin(a) - y, -y], [self._first * math.cos(a) + x, x]])
 
-    def inverse(self, x: float, y: float, elbow: float = 1.0) -> Array:
+    def inverse(self, tip: Sequence[float] | Array, elbow: float = 1.0) -> Array:
         """Joint angles (2,) [rad] that put the tip at (x, y) [m]; ``elbow``: sign of the second angle.
 
         Raises ValueError where the tip cannot get there.
         """
+        x, y = map(float, tip)
         first, second = self._first, self._second
         cosine = (x * x + y * y - first**2 - second**2) / (2.0 * first * second)
         if abs(cosine) > 1:

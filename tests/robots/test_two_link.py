@@ -17,11 +17,11 @@ def test_closed_forms_are_those_of_the_arm(q):
 
 @pytest.mark.parametrize("elbow", [-1, 1])
 def test_both_elbows_reach_the_same_point(elbow):
-    q = CLOSED.inverse(0.6, 0.8, elbow)
+    q = CLOSED.inverse([0.6, 0.8], elbow)
     assert CLOSED.position(q) == pytest.approx([0.6, 0.8])
     assert np.sign(q[1]) == elbow
 
 
 def test_a_place_out_of_reach_is_refused():
     with pytest.raises(ValueError, match=r"\(2, 0\) m is out of reach"):
-        CLOSED.inverse(2.0, 0.0)
+        CLOSED.inverse([2.0, 0.0])

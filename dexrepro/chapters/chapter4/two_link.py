@@ -57,7 +57,7 @@ def scene(config: Config) -> World:
     """The arm at rest with its tip at the start, under gravity and the force field at its tip."""
     world = World(step=config.step, gravity=(0.0, -config.arm.gravity, 0.0), perturbation=config.perturbation)
     arm = planar(config.arm.lengths, config.arm.masses, config.arm.inertias, radius=0.03)
-    world.add_arm("arm", arm, position=TwoLink(config.arm.lengths).inverse(*config.task.start))
+    world.add_arm("arm", arm, position=TwoLink(config.arm.lengths).inverse(config.task.start))
     x, y = config.task.force
     world.add(Push("arm", lambda time: (x, y, 0.0), name="field"))
     return world

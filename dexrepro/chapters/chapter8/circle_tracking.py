@@ -58,9 +58,8 @@ RATE = 100.0
 def scene(config: Config) -> World:
     """The arm in a vertical plane (gravity along -y), its end point at the start."""
     world = World(step=config.step, gravity=(0.0, -config.gravity, 0.0), perturbation=config.perturbation)
-    world.add_arm(
-        "arm", two_link(config.arm), TwoLink(config.arm.lengths).inverse(*config.start, elbow=config.arm.elbow)
-    )
+    start = TwoLink(config.arm.lengths).inverse(config.start, config.arm.elbow)
+    world.add_arm("arm", two_link(config.arm), start)
     friction = config.friction
     if friction.coulomb or friction.viscous:
         world.add(JointLoad("arm", joint_friction(friction.viscous, friction.coulomb, friction.width)))

@@ -61,7 +61,7 @@ def scene(config: Config) -> World:
     """The arm in a vertical plane and an object whose surface is the plane x = surface, frictionless along y."""
     world = World(step=config.step, gravity=(0.0, -config.gravity, 0.0), perturbation=config.perturbation)
     start = circle(config.path)(0.0).position if config.start is None else np.array(config.start)
-    world.add_arm("arm", two_link(config.arm), TwoLink(config.arm.lengths).inverse(*start, elbow=config.arm.elbow))
+    world.add_arm("arm", two_link(config.arm), TwoLink(config.arm.lengths).inverse(start, config.arm.elbow))
     stiffness, damping, surface = config.object.stiffness, config.object.damping, config.object.surface
 
     def push(time: float, position: Any, velocity: Any) -> tuple[float, float, float]:
