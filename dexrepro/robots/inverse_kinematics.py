@@ -6,15 +6,15 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dposv
 
+from dexrepro.arrays import Array
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import forward, jacobian
 from dexrepro.robots.planar import PlanarTip
 from dexrepro.robots.rotations import rotation_error, tilt
 
-Array = NDArray[np.float64]
 Place = Sequence[float] | Array
 TASKS = ("position", "pose", "axis")
 
@@ -22,9 +22,11 @@ TASKS = ("position", "pose", "axis")
 class Kinematics(Protocol):
     """Pose and Jacobian of one joint state, such as physics.model.RigidBodyModel offers."""
 
-    def forward(self, q: Array) -> tuple[Array, Array]: ...
+    def forward(self, q: Array) -> tuple[Array, Array]:
+        """Position (3,) [m] and rotation (3, 3) of the end point, world frame, at joint angles (n,) [rad]."""
 
-    def jacobian(self, q: Array) -> Array: ...
+    def jacobian(self, q: Array) -> Array:
+        """Geometric Jacobian (6, n): linear [m/rad] over angular rows, world frame."""
 
 
 class Unreachable(RuntimeError):
