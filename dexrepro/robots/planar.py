@@ -185,16 +185,16 @@ class PlanarChain(Generic[Number]):
         return q[0] + a, q[1] + b, q[2] + c
 
     def rates(
-        self, q: Triple, velocity: Point, damping: float = 0.0, links: Links | None = None
-    ) -> tuple[Any, Any, Any]:
+        self, q: Row[Number], velocity: tuple[Number, Number], damping: float = 0.0, links: Known[Number] = None
+    ) -> Three[Number]:
         """Joint rates J^T (J J^T + lambda^2 I)^-1 V [rad/s] for a tip velocity V (x, y) [m/s]; damping: lambda [m]."""
         (x1, x2, x3), (y1, y2, y3) = self.jacobian(q, links)
-        u, v = velocity
+        vx, vy = velocity
         xx = x1 * x1 + x2 * x2 + x3 * x3 + damping * damping
         yy = y1 * y1 + y2 * y2 + y3 * y3 + damping * damping
         xy = x1 * y1 + x2 * y2 + x3 * y3
         determinant = xx * yy - xy * xy
-        u, v = (yy * u - xy * v) / determinant, (xx * v - xy * u) / determinant
+        u, v = (yy * vx - xy * vy) / determinant, (xx * vy - xy * vx) / determinant
         return x1 * u + y1 * v, x2 * u + y2 * v, x3 * u + y3 * v
 
     def tip_torque(self, q: Row[Number], force: tuple[Number, Number], links: Known[Number] = None) -> Three[Number]:
