@@ -34,6 +34,7 @@ from dexrepro.config import (
     resolved_block,
 )
 from dexrepro.experiment import Claim, Config, Metrics
+from dexrepro.measures import binomial_interval
 from dexrepro.pool import pool
 from dexrepro.runner import flat, generator, live, summarise
 from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
@@ -220,7 +221,7 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
             continue
         margins = np.array([margin for margin, _ in pairs])
         holds = int(np.sum(margins > 0))
-        low, high = stats.binomtest(holds, len(pairs)).proportion_ci(method="wilson")
+        low, high = binomial_interval(holds, len(pairs))
         parameter, correlation = _most_influential(margins, [values for _, values in pairs])
         claims[claim.id] = {
             "samples": len(pairs), "holds": holds, "share": holds / len(pairs), "low": low, "high": high,

@@ -12,7 +12,6 @@ from dexrepro.chapters.chapter1 import (
     hold_and_move,
     lyapunov,
     ready_to_hold,
-    rigid_boxes,
     two_nuts,
 )
 from dexrepro.chapters.chapter1.followers import Follower
@@ -175,11 +174,3 @@ def test_latch_switches_once_and_the_light_touch_is_held():
     numbers = hand_over.measure(recording, config)
     assert numbers["switches"] == 1
     assert abs(numbers["bias"]) < 0.2
-
-
-def test_score_interval_contains_the_share():
-    low, high = rigid_boxes.wilson(9, 9)
-    assert low == pytest.approx(0.70, abs=0.01)
-    assert high == pytest.approx(1.0)
-    low, high = rigid_boxes.wilson(5, 10)
-    assert low < 0.5 < high

@@ -11,8 +11,8 @@ import pandas as pd
 
 from dexrepro.chapters.chapter2 import balloon_pair
 from dexrepro.chapters.chapter2.measures import Array, force_error, shown
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.measures import rms
 
 FIGURES = {
     "2.9c": Figure(

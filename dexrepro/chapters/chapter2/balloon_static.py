@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter2 import balloon_pair
-from dexrepro.chapters.chapter2.measures import last_outside, mean
-from dexrepro.chapters.measures import rms
+from dexrepro.chapters.chapter2.measures import mean
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.measures import last_outside, rms
 from dexrepro.physics.rendering import Camera
 
 FIGURES = {

@@ -10,8 +10,8 @@ import pandas as pd
 
 from dexrepro.chapters.chapter2 import planar_pair
 from dexrepro.chapters.chapter2.measures import force_error, mean, shown
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.measures import rms
 
 FIGURES = {
     "2.8": Figure(

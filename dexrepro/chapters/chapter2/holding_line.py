@@ -10,9 +10,9 @@ import numpy as np
 
 from dexrepro.chapters.chapter2 import planar_pair
 from dexrepro.chapters.chapter2.measures import force_error, mean
-from dexrepro.chapters.measures import rms
 from dexrepro.control.holding_reference import KnownMovement
 from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.measures import rms
 
 FIGURES = {
     "2.5": Figure(

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter2 import planar_pair
-from dexrepro.chapters.chapter2.measures import force_error, last_outside, mean
-from dexrepro.chapters.measures import rms
+from dexrepro.chapters.chapter2.measures import force_error, mean
 from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.measures import last_outside, rms
 
 FIGURES = {
     "2.6": Figure(

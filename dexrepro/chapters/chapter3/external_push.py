@@ -22,9 +22,9 @@ from dexrepro.chapters.chapter3.scene import (
     cutaway,
     gripper_arm,
 )
-from dexrepro.chapters.measures import rms
 from dexrepro.control.momentum_observer import MomentumObserver
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.measures import rms
 from dexrepro.physics.elements import Push
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter7 import skills
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.measures import rms
 
 FIGURES = {
     "7.9": Figure(

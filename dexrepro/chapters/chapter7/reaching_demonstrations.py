@@ -10,6 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.measures import rms, rms_distance
 from dexrepro.robots.pen_arm import pen_arm_angles
 
 FIGURES = {
@@ -106,9 +107,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
     learned = recording["learned"]
     error = recording["learned_stiffness"] - stiffness
     return {
-        "ordinary_rmse": float(skills.rms(learned, ordinary.mean(axis=0))),
+        "ordinary_rmse": float(rms_distance(learned, ordinary.mean(axis=0))),
         "ordinary_end_error": float(np.linalg.norm(learned[-1] - skills.reach(config).ends[1])),
-        "stiffness_rmse": float(np.sqrt(np.mean(error**2)) / stiffness.mean()),
+        "stiffness_rmse": float(rms(error) / stiffness.mean()),
         "smallest_clearance": min(
             float(c.obstacle.clearance(paths, config.scene.tool_radius).min())
             for c, paths in zip(skills.conditions(config), paths_of(recording, "reactions", config))

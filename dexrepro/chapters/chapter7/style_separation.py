@@ -10,6 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.measures import rms_distance
 from dexrepro.primitives.reactive import Styles
 
 FIGURES = {
@@ -36,7 +37,7 @@ def simulate(config: Config, rng: Any) -> Recording:
         styles = Styles.separate(targets, rank, config.style.shared)
         weights = styles.fit(learned.features, learned.primitive.phases, config.enhancement.ridge)
         paths = learned.perform(change @ weights)
-        error = skills.rms(paths, learned.demonstrated[chosen])
+        error = rms_distance(paths, learned.demonstrated[chosen])
         clearance = [
             float(skills.conditions(config)[i].obstacle.clearance(path, config.scene.tool_radius))
             for i, path in zip(chosen, paths)
