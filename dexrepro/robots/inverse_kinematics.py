@@ -39,7 +39,7 @@ class InverseKinematics:
     dq = J^+ (V_d + k_E (X_d - X)) + (I - J^+ J) k_n (q_rest - q), Eq. (1.3) with the sign that makes the error decay,
     J^+ = J^T (J J^T + lambda^2 I)^-1, integrated over the period. The error is that of the reference itself, not of
     the measured arm. Rates stay within the arm's speed limits; a joint that would leave its range is held at its
-    limit and the others take over its share.
+    limit and the others take over its share, or do not where ``redistribute`` is False (and the task waits).
 
     task: "position" (planar arms: x, y), "pose" (planar arms: x, y, heading) or "axis" (position and the direction
     of the end point's z axis). gain: k_E [1/s], where 1 / period makes every call one Newton step; period [s];
@@ -57,11 +57,13 @@ class InverseKinematics:
         rest: ArrayLike | None = None,
         rest_gain: float = 0.0,
         kinematics: Kinematics | None = None,
+        redistribute: bool = True,
     ) -> None:
         if task not in TASKS:
             raise ValueError(f"task '{task}' is none of {', '.join(TASKS)}")
         self.arm, self.task = arm, task
         self.gain, self.period, self.damping, self.rest_gain = gain, period, damping, rest_gain
+        self.redistribute = redistribute
         self.rest = None if rest is None else np.asarray(rest, dtype=float)
         self._kinematics = kinematics or _Description(arm)
         self._planar = PlanarTip(arm) if arm.is_planar and task == "position" else None
@@ -151,6 +153,8 @@ class InverseKinematics:
             return result
         low = np.maximum((arm.lower - self.position) / self.period, -arm.speed)
         high = np.minimum((arm.upper - self.position) / self.period, arm.speed)
+        if not self.redistribute:
+            return np.minimum(np.maximum(result, low), high)
         free = np.ones(arm.dof, dtype=bool)
         fixed = np.zeros(arm.dof)
         while True:
