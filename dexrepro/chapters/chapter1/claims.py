@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.chapters.chapter1.hold_and_move import PRINTED
+from dexrepro.chapters.chapter1.hold_and_move.experiment import PRINTED
 from dexrepro.experiment import Claim, Predicate, Reference, every, greater, less, ordered, within
 
 TRACKING, HOLDING, READY = "force_tracking", "hold_and_move", "ready_to_hold"
