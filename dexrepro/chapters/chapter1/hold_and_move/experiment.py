@@ -15,6 +15,7 @@ import numpy as np
 from scipy import signal
 
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
+from dexrepro.chapters.chapter1.hold_and_move.claims import PRINTED
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.chapters.measures import rms
 from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
@@ -31,11 +32,6 @@ RATE = 50.0
 SIDES = {"leader": "right", "follower": "left"}
 LEVEL = np.stack([(0.0, 0.0, -1.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], axis=1)  # R_D while the line is level
 VIEW = Camera(target=(0.5, 0.0, 0.3), distance=1.45, yaw=75.0, pitch=-18.0)
-PRINTED = {  # RMS force error [N], Section 1.5.2.2: proposed, impedance, fixed distance
-    "t1": (0.87, 1.22, 2.48),
-    "t2": (0.82, 1.21, 2.61),
-    "t3": (0.77, 1.31, 1.93),
-}
 BALL, TABLE = (0.35, 0.65, 0.85, 1.0), (0.85, 0.82, 0.78, 1.0)
 FLIP = np.diag([1.0, -1.0, -1.0])
 

@@ -9,7 +9,8 @@ import pandas as pd
 
 from dexrepro.experiment import Config, Figure, Film, Recording
 
-from .experiment import PRINTED, VIEW
+from .claims import PRINTED
+from .experiment import VIEW
 
 FIGURES = {
     "1.1": Figure(

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter2.batch import simulate_runs, table_rows
-from dexrepro.chapters.chapter2.claims import CLAIMS
 from dexrepro.chapters.chapter2.holding_comparison import experiment as holding_comparison
+from dexrepro.chapters.chapter2.holding_comparison.claims import CLAIMS
 from dexrepro.experiment import Config, Metrics, Recording
 
 JUDGED = ("C2.12", "C2.13", "C2.14", "C2.15", "C2.17", "C2.18", "C2.19", "C2.31")
