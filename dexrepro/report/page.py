@@ -66,7 +66,7 @@ class _Report:
             text = f"Eq. ({entry['equation']}): {entry['name']}, {entry['file']}:{entry['line']}"
             self._searchable(text, f"equations.html#eq-{entry['equation']}")
         self._search_parameters(book)
-        common: dict[str, Any] = {"chapters": book, "provenance": self._provenance(book)}
+        common: dict[str, Any] = {"about": chapters.book(), "chapters": book, "provenance": self._provenance(book)}
         self._page("index", here="index", **common, **self._front(book))
         for chapter in book:
             self._page(f"chapter{chapter['number']}", "chapter", here=chapter["number"], chapter=chapter, **common)

@@ -110,7 +110,7 @@ def test_nearest_and_plane_return_what_they_know(cases: Any, learned: skills.Ski
 
 def test_learning_experiments_measure_what_they_simulate(cases: Any) -> None:
     for module, case in ((style_separation, "one_obstacle"), (fuzzy_generalisation, "main")):
-        config = cases(module.__name__.rpartition(".")[2], case)
+        config = cases(module.__name__.split(".")[-2], case)
         metrics = module.measure(module.simulate(config, None), config)
         assert all(np.isfinite(value) for value in metrics.values())
     config = cases("reactive_learning", "frozen", draws=2)

@@ -19,7 +19,7 @@ CASES = {name: experiment_cases(compose_chapter("8"), name) for name in ("circle
 
 
 def run(experiment, case, **changes):
-    module = importlib.import_module(f"dexrepro.chapters.chapter8.{experiment}")
+    module = importlib.import_module(f"dexrepro.chapters.chapter8.{experiment}.experiment")
     values = {**CASES[experiment][case], **changes, "perturbation": 0.0, "seed": 0, "case": case}
     config = live(values)
     return module.simulate(config, lambda purpose: generator(0, experiment, purpose)), config
