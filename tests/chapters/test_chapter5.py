@@ -8,7 +8,7 @@ from dexrepro import chapters
 from dexrepro.chapters.chapter5 import pen
 from dexrepro.cli import main
 from dexrepro.config import compose_chapter, experiment_cases
-from dexrepro.robots.pen_kinematics import pen_arm_angles
+from dexrepro.robots.pen_arm import pen_arm_angles
 
 chapter5 = chapters.load("5")
 
