@@ -12,7 +12,6 @@ import pandas as pd
 from dexrepro.experiment import Config, Figure, Metrics, Recording
 from dexrepro.vision.classifier import GraspClassifier, confusion
 
-REQUIRES = ("torch",)
 FIGURES = {
     "3.C": Figure(
         "Accuracy on training and on new scenes over 25 epochs, and confusion on the new scenes, for a patch of 0.16 m "

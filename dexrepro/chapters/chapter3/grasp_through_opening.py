@@ -25,7 +25,6 @@ from dexrepro.vision.patches import Grasp, Picture, cut, observe
 from dexrepro.vision.tabletop import BAD, Box, Item, label, place_items, scatter, taken, training_set
 
 Array = NDArray[np.float64]
-REQUIRES = ("torch",)
 VIEW = Camera(target=(0.5, -0.25, 0.2), distance=1.3, yaw=40.0, pitch=-25.0)
 FINGERS = 0.04  # m, how far the fingers, which are not bodies of the simulation, reach beyond the tool's tip
 FIGURES = {
