@@ -10,7 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg.lapack import dposv
 
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import PlanarTip, forward, jacobian, rotation_error
+from dexrepro.robots.kinematics import forward, jacobian
+from dexrepro.robots.planar import PlanarTip
+from dexrepro.robots.rotations import rotation_error, tilt
 
 Array = NDArray[np.float64]
 Place = Sequence[float] | Array
@@ -117,8 +119,8 @@ class InverseKinematics:
             rows = np.zeros((5, 6))
             rows[:3, :3] = np.eye(3)
             rows[3:, 3:] = turn.T[:2]
-            tilt = _axis_error(np.asarray(rotation, dtype=float)[:, 2], turn)
-            error = np.concatenate((offset, tilt))
+            lean = turn.T[:2] @ tilt(turn[:, 2], np.asarray(rotation, dtype=float)[:, 2])
+            error = np.concatenate((offset, lean))
         return rows @ full, error, rows
 
     def _rates(self, jacobian: Array, rate: Array, pull: Array | None) -> Array:
@@ -224,13 +226,3 @@ class _Description:
 
     def jacobian(self, q: Array) -> Array:
         return jacobian(self._arm, q)
-
-
-def _axis_error(wanted: Array, turn: Array) -> Array:
-    """The two components, along the end point's x and y, of the rotation vector that brings its z axis to wanted."""
-    axis = np.cross(turn[:, 2], wanted)
-    sine, cosine = float(np.linalg.norm(axis)), float(turn[:, 2] @ wanted)
-    if sine < 1e-9:
-        # Aligned, or exactly opposed: then any axis across will do.
-        return np.array((0.0 if cosine > 0 else np.pi, 0.0))
-    return turn.T[:2] @ axis * (np.arctan2(sine, cosine) / sine)

@@ -7,9 +7,12 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.vision.patches import CHANNELS, SAMPLES
 
-Array = NDArray[np.float32]
+Single = NDArray[np.float32]
+"""Single precision."""
+
 INPUT = 28  # side that the 24 x 24 patches are resampled to
 KERNEL = 5
 CLASSES = 3
@@ -27,16 +30,16 @@ class GraspClassifier:
     def __init__(self, seed: int, rate: float = 1e-3, batch: int = 64) -> None:
         self.rate, self.batch = rate, batch
         start, self._order = (np.random.RandomState(seed) for _ in range(2))
-        self.weights: list[Array] = []  # of a layer and its offset, in turn
+        self.weights: list[Single] = []  # of a layer and its offset, in turn
         for shape in SHAPES:
             bound = np.float32(1 / np.sqrt(np.prod(shape[1:])))
             self.weights += [_uniform(start, shape, bound), _uniform(start, shape[:1], bound)]
-        self.mean: Array = np.zeros((1, len(CHANNELS), 1, 1), np.float32)
-        self.deviation: Array = np.ones_like(self.mean)
+        self.mean: Single = np.zeros((1, len(CHANNELS), 1, 1), np.float32)
+        self.deviation: Single = np.ones_like(self.mean)
 
     def fit(
         self,
-        patches: Array,
+        patches: Single,
         labels: NDArray[np.int64],
         epochs: int,
         watch: Callable[[int, float], None] | None = None,
@@ -57,21 +60,21 @@ class GraspClassifier:
             if watch is not None:
                 watch(epoch + 1, right / len(inputs))
 
-    def probabilities(self, patches: Array) -> NDArray[np.float64]:
+    def probabilities(self, patches: Single) -> Array:
         """Probability of each class, shape (n, 3)."""
         inputs = self._prepared(patches)
         parts = [_softmax(self._scores(inputs[k : k + 128])[0]) for k in range(0, len(inputs), 128)]
         return np.concatenate([np.zeros((0, CLASSES)), *parts])
 
-    def gradient(self, inputs: Array, labels: NDArray[np.int64]) -> tuple[Array, list[Array]]:
+    def gradient(self, inputs: Single, labels: NDArray[np.int64]) -> tuple[Single, list[Single]]:
         """Scores (n, 3) of prepared inputs, and the gradient of their mean cross-entropy by each of the weights."""
         first, _, second, _, third, _, fourth, _ = self.weights
         scores, (columns1, conv1, columns2, conv2, flat, hidden) = self._scores(inputs)
         by_scores = _softmax(scores)
         by_scores[np.arange(len(labels)), labels] -= 1
         by_scores /= np.float32(len(labels))
-        by_hidden: Array = (by_scores @ fourth) * (hidden > 0)
-        by_flat: Array = (by_hidden @ third).reshape(-1, 32, 4, 4).transpose(0, 2, 3, 1)
+        by_hidden: Single = (by_scores @ fourth) * (hidden > 0)
+        by_flat: Single = (by_hidden @ third).reshape(-1, 32, 4, 4).transpose(0, 2, 3, 1)
         by_conv2 = _unpooled(by_flat, conv2)
         by_pooled = _spread(by_conv2, second)
         by_conv1 = _unpooled(by_pooled, conv1)
@@ -83,7 +86,7 @@ class GraspClassifier:
             by_scores.T @ hidden, by_scores.sum(0),
         ]  # fmt: skip
 
-    def _scores(self, inputs: Array) -> tuple[Array, tuple[Array, ...]]:
+    def _scores(self, inputs: Single) -> tuple[Single, tuple[Single, ...]]:
         """Scores (n, 3) before the softmax, and what the gradient needs of the layers below."""
         first, offset1, second, offset2, third, offset3, fourth, offset4 = self.weights
         conv1, columns1 = _convolved(inputs, first, offset1)
@@ -92,7 +95,7 @@ class GraspClassifier:
         hidden = np.maximum(flat @ third.T + offset3, 0)
         return hidden @ fourth.T + offset4, (columns1, conv1, columns2, conv2, flat, hidden)
 
-    def _prepared(self, patches: Array) -> Array:
+    def _prepared(self, patches: Single) -> Single:
         """Standardised and resampled inputs (n, 28, 28, 7)."""
         standard = ((patches - self.mean) / self.deviation).astype(np.float32)
         matrix = _resampling(SAMPLES, INPUT)
@@ -102,12 +105,12 @@ class GraspClassifier:
 class Adam:
     """Steps of Kingma and Ba's Adam with its usual constants, in place."""
 
-    def __init__(self, weights: list[Array], rate: float) -> None:
+    def __init__(self, weights: list[Single], rate: float) -> None:
         self.rate, self.count = rate, 0
         self.first = [np.zeros_like(weight) for weight in weights]
         self.second = [np.zeros_like(weight) for weight in weights]
 
-    def step(self, weights: list[Array], gradient: list[Array]) -> None:
+    def step(self, weights: list[Single], gradient: list[Single]) -> None:
         self.count += 1
         rate, scale = self.rate / (1 - 0.9**self.count), (1 - 0.999**self.count) ** 0.5
         for weight, slope, first, second in zip(weights, gradient, self.first, self.second, strict=True):
@@ -116,7 +119,7 @@ class Adam:
             weight -= rate * first / (np.sqrt(second) / scale + 1e-8)
 
 
-def _convolved(inputs: Array, weight: Array, offset: Array) -> tuple[Array, Array]:
+def _convolved(inputs: Single, weight: Single, offset: Single) -> tuple[Single, Single]:
     """Rectified convolution (n, h - 4, w - 4, out) of inputs (n, h, w, in), and the windows it took, one a row."""
     windows = np.lib.stride_tricks.sliding_window_view(inputs, (KERNEL, KERNEL), axis=(1, 2))
     columns = windows.reshape(-1, weight[0].size)
@@ -124,7 +127,7 @@ def _convolved(inputs: Array, weight: Array, offset: Array) -> tuple[Array, Arra
     return np.maximum(result, 0, out=result).reshape(*windows.shape[:3], -1), columns
 
 
-def _spread(by_result: Array, weight: Array) -> Array:
+def _spread(by_result: Single, weight: Single) -> Single:
     """Gradient by the inputs of a convolution from that by its result."""
     count, height, width, _ = by_result.shape
     rows = by_result.reshape(-1, len(weight)) @ weight.reshape(len(weight), -1)
@@ -136,26 +139,26 @@ def _spread(by_result: Array, weight: Array) -> Array:
     return result
 
 
-def _pooled(inputs: Array) -> Array:
+def _pooled(inputs: Single) -> Single:
     """Largest of each 2 x 2: (n, h, w, c) becomes (n, h / 2, w / 2, c)."""
     return np.maximum(
         np.maximum(inputs[:, ::2, ::2], inputs[:, 1::2, ::2]), np.maximum(inputs[:, ::2, 1::2], inputs[:, 1::2, 1::2])
     )
 
 
-def _unpooled(by_pooled: Array, inputs: Array) -> Array:
+def _unpooled(by_pooled: Single, inputs: Single) -> Single:
     """Gradient by what was rectified to ``inputs`` and pooled: only the largest, where positive, has one."""
     largest = np.repeat(np.repeat(_pooled(inputs), 2, axis=1), 2, axis=2)
     spread = np.repeat(np.repeat(by_pooled, 2, axis=1), 2, axis=2)
     return spread * ((inputs == largest) & (inputs > 0))
 
 
-def _softmax(scores: Array) -> Array:
+def _softmax(scores: Single) -> Single:
     powers = np.exp(scores - scores.max(axis=1, keepdims=True))
     return powers / powers.sum(axis=1, keepdims=True)
 
 
-def _resampling(size: int, target: int) -> Array:
+def _resampling(size: int, target: int) -> Single:
     """Matrix (target, size) that interpolates linearly between the centres of pixels."""
     at = np.clip((np.arange(target) + 0.5) * size / target - 0.5, 0, None)
     low = np.minimum(at.astype(int), size - 1)
@@ -166,7 +169,7 @@ def _resampling(size: int, target: int) -> Array:
     return matrix
 
 
-def _uniform(start: np.random.RandomState, shape: tuple[int, ...], bound: np.float32) -> Array:
+def _uniform(start: np.random.RandomState, shape: tuple[int, ...], bound: np.float32) -> Single:
     bits = start.randint(1 << 32, size=shape, dtype=np.uint32) & np.uint32((1 << 24) - 1)
     return bits.astype(np.float32) * np.float32(2.0**-24) * (2 * bound) - bound
 
