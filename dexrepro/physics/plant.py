@@ -221,7 +221,7 @@ class SimulatedArm(Point):
         self.load = [a + float(b) for a, b in zip(self.load, torque, strict=True)]
 
     def observe(self, time: float, sample: bool) -> Sense:
-        """Refresh what the controller sees; imperfect sensors deliver a new value only at control instants."""
+        """What the controller sees at a time [s]; imperfect sensors have news at control instants (``sample``)."""
         sense = self.sense
         sense.time = time
         if self.joint_channel is None:

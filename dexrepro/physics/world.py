@@ -216,7 +216,7 @@ class World:
         return {name: body for name, body in self.bodies.items() if body.mass > 0}
 
     def contacts(self, name: str) -> list[Touch]:
-        """Points where a named body touches anything, as of the last step."""
+        """Points [m] and forces [N] where a named body touches anything, as of the last step."""
         return touches(self.client, self._body(name))
 
     def contact_force(self, first: str, second: str) -> float:

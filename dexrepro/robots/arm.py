@@ -258,7 +258,7 @@ class Arm:
         )
 
     def placed(self, base: Pose) -> Arm:
-        """The same arm with its base elsewhere."""
+        """The same arm with its base elsewhere in the world [m, rad]."""
         return replace(self, base=base)
 
     def scaled(self, factor: float) -> Arm:
