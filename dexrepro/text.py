@@ -13,9 +13,9 @@ def decoded(data: bytes, encoding: str | None = None) -> str:
 
     Zeros at the end, which some programs leave, are dropped. Raises ValueError with half a sentence.
     """
-    by_zeros = {(True, False): "utf-16-be", (False, True): "utf-16-le"}
-    zeros = tuple(byte == 0 for byte in data[:2])
-    kind = next((name for mark, name in MARKS.items() if data.startswith(mark)), by_zeros.get(zeros))  # type: ignore[call-overload]
+    kind = next((name for mark, name in MARKS.items() if data.startswith(mark)), None)
+    if not kind and 0 in data[:2]:
+        kind = "utf-16-be" if data[0] == 0 else "utf-16-le"
     try:
         return data.decode(encoding or kind or "utf-8").lstrip("\ufeff").rstrip("\0\x1a")
     except LookupError:

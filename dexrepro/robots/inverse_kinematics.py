@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dposv
 
+from dexrepro.arrays import Array
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import PlanarTip, forward, jacobian, rotation_error
+from dexrepro.robots.kinematics import forward, jacobian
+from dexrepro.robots.planar import PlanarTip
+from dexrepro.robots.rotations import rotation_error, tilt
 
-Array = NDArray[np.float64]
 Place = Sequence[float] | Array
 TASKS = ("position", "pose", "axis")
 
@@ -20,9 +22,11 @@ TASKS = ("position", "pose", "axis")
 class Kinematics(Protocol):
     """Pose and Jacobian of one joint state, such as physics.model.RigidBodyModel offers."""
 
-    def forward(self, q: Array) -> tuple[Array, Array]: ...
+    def forward(self, q: Array) -> tuple[Array, Array]:
+        """Position (3,) [m] and rotation (3, 3) of the end point, world frame, at joint angles (n,) [rad]."""
 
-    def jacobian(self, q: Array) -> Array: ...
+    def jacobian(self, q: Array) -> Array:
+        """Geometric Jacobian (6, n): linear [m/rad] over angular rows, world frame."""
 
 
 class Unreachable(RuntimeError):
@@ -117,8 +121,8 @@ class InverseKinematics:
             rows = np.zeros((5, 6))
             rows[:3, :3] = np.eye(3)
             rows[3:, 3:] = turn.T[:2]
-            tilt = _axis_error(np.asarray(rotation, dtype=float)[:, 2], turn)
-            error = np.concatenate((offset, tilt))
+            lean = turn.T[:2] @ tilt(turn[:, 2], np.asarray(rotation, dtype=float)[:, 2])
+            error = np.concatenate((offset, lean))
         return rows @ full, error, rows
 
     def _rates(self, jacobian: Array, rate: Array, pull: Array | None) -> Array:
@@ -224,13 +228,3 @@ class _Description:
 
     def jacobian(self, q: Array) -> Array:
         return jacobian(self._arm, q)
-
-
-def _axis_error(wanted: Array, turn: Array) -> Array:
-    """The two components, along the end point's x and y, of the rotation vector that brings its z axis to wanted."""
-    axis = np.cross(turn[:, 2], wanted)
-    sine, cosine = float(np.linalg.norm(axis)), float(turn[:, 2] @ wanted)
-    if sine < 1e-9:
-        # Aligned, or exactly opposed: then any axis across will do.
-        return np.array((0.0 if cosine > 0 else np.pi, 0.0))
-    return turn.T[:2] @ axis * (np.arctan2(sine, cosine) / sine)

@@ -13,13 +13,12 @@ from pathlib import Path
 from xml.parsers import expat
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from dexrepro.arrays import Array
 from dexrepro.robots.arm import GREY, Arm, Joint, Link, Pose, Shape
 from dexrepro.text import decoded
 
-Array = NDArray[np.float64]
 TURNING = ("revolute", "continuous")
 FOREIGN = {"mujoco": "an MJCF file of MuJoCo", "sdf": "an SDF file of Gazebo", "COLLADA": "a COLLADA mesh"}
 MESHES = (".stl", ".obj", ".dae")  # what the engine reads
@@ -49,9 +48,10 @@ def from_urdf(
     try:
         tree = _Tree(_parsed(Path(path).expanduser()), Path(path).expanduser(), packages or {})
         arm = tree.arm(end, root, base)
+    except FileNotFoundError:
+        raise ValueError(f"there is no URDF file '{path}'") from None
     except OSError as error:
-        reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror
-        raise ValueError(f"cannot read the URDF file '{path}': {reason}") from None
+        raise ValueError(f"cannot read the URDF file '{path}': {error.strerror}") from None
     except ValueError as error:
         raise ValueError(f"URDF file '{path}': {error}") from None
     if tree.mended:
@@ -146,8 +146,8 @@ class _Tree:
                 )
             if (mimic := node.find("mimic")) is not None:
                 raise ValueError(
-                    f"joint '{_name(node)}' follows joint '{mimic.get('joint')}' (mimic), but an arm's joints are free; "
-                    f"end the arm before it, at {_link(node, 'parent')}"
+                    f"joint '{_name(node)}' follows joint '{mimic.get('joint')}' (mimic), but an arm's joints are "
+                    f"free; end the arm before it, at {_link(node, 'parent')}"
                 )
         names = set(map(_name, chain))
         for part in [part for name in moving for part in self.carried(name, moving)]:

@@ -8,7 +8,7 @@ from dexrepro.chapters import chapter5
 from dexrepro.chapters.chapter5 import pen
 from dexrepro.cli import main
 from dexrepro.config import compose_chapter, experiment_cases
-from dexrepro.robots.pen_kinematics import pen_arm_angles
+from dexrepro.robots.pen_arm import pen_arm_angles
 
 
 def test_every_claim_and_erratum_names_metrics_of_an_experiment_with_cases():

@@ -164,5 +164,5 @@ def test_what_cannot_be_used_gets_one_sentence(key: str, value: str, sentence: s
 
 def test_a_negative_mass_gets_one_sentence(folder: Path) -> None:
     (folder / "tiny.urdf").write_text(URDF.replace('<mass value="1"/>', '<mass value="-1"/>'))
-    with pytest.raises(InputError, match=r"link 'upper' of 'tiny\.urdf' has the mass -1 kg"):
+    with pytest.raises(InputError, match=r"'tiny\.urdf': link 'upper' has the mass -1 kg"):
         scene.simulate(configured(), None)

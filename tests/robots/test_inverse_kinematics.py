@@ -6,9 +6,10 @@ import pytest
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.inverse_kinematics import InverseKinematics, Unreachable, solve
-from dexrepro.robots.kinematics import forward, rotation_error
+from dexrepro.robots.kinematics import forward
 from dexrepro.robots.pen_arm import pen_arm
 from dexrepro.robots.planar import planar
+from dexrepro.robots.rotations import rotation_error
 
 BOOK = planar([0.5, 0.3, 0.1], [1.5, 0.9, 0.2], base=(0.5, 0.0))
 ARMS = {"planar 2": planar([0.2, 0.2], [2.0, 2.0]), "planar 3": BOOK, "pen arm": pen_arm(), "baxter": baxter("left")}

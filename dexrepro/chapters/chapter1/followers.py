@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 Array = NDArray[np.float64]
 

@@ -17,8 +17,7 @@ from dexrepro.experiment import Config, Figure, Metrics, Recording
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
-from dexrepro.robots.planar import planar
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain, planar
 
 FIGURES = {
     "1.9": Figure(

@@ -18,7 +18,7 @@ from scipy import signal
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.chapters.measures import rms
-from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
+from dexrepro.control.facing import facing
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.rendering import Camera
@@ -27,6 +27,7 @@ from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.kinematics import forward
+from dexrepro.robots.rotations import quaternion_from_rotation, rotation_from_quaternion
 
 FIGURES = {
     "1.1": Figure(

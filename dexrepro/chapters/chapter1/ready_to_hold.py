@@ -18,13 +18,14 @@ from scipy.spatial.transform import Rotation
 from dexrepro.chapters.chapter1.followers import Follower, solve_pose
 from dexrepro.chapters.chapter1.hold_and_move import BALL, FLIP, LEVEL, SIDES, joint_channels
 from dexrepro.chapters.measures import rms
-from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
+from dexrepro.control.facing import facing
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.kinematics import forward
+from dexrepro.robots.rotations import quaternion_from_rotation, rotation_from_quaternion
 
 FIGURES = {
     "1.7": Figure(

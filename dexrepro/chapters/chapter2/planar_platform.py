@@ -10,7 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter2.planar_pair import path
 from dexrepro.experiment import Config, Figure, Metrics, Recording
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 FIGURES = {
     "2.3": Figure(

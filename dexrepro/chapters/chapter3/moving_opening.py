@@ -14,7 +14,8 @@ from dexrepro.chapters.chapter3 import drawings, reach
 from dexrepro.chapters.chapter3.measures import add_distances, headed, reach_metrics
 from dexrepro.chapters.chapter3.scene import ARM, FILMED, Touching, build, cutaway
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
-from dexrepro.physics.world import Camera, World
+from dexrepro.physics.rendering import Camera
+from dexrepro.physics.world import World
 
 Array = NDArray[np.float64]
 _SHOWN = "The simulated arm and the moving lid {} after its movement began. The book shows photographs."

@@ -15,6 +15,7 @@ from dexrepro.networks import Lattice
 from dexrepro.physics.rendering import Camera
 from dexrepro.robots import kinematics
 from dexrepro.robots.baxter import baxter
+from dexrepro.robots.rotations import rotation_error
 
 FIGURES = {
     "4.11": Figure(
@@ -77,7 +78,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
 def _hand_tilt(positions: Array) -> float:
     """Largest sine of the angle by which the hand, whose orientation is not controlled, turned from its start."""
     rotations = kinematics.forward(baxter("right"), positions)[1]
-    errors = np.linalg.norm(kinematics.rotation_error(rotations[0], rotations), axis=-1)
+    errors = np.linalg.norm(rotation_error(rotations[0], rotations), axis=-1)
     return float(np.max(np.sin(np.minimum(errors, np.pi / 2))))
 
 

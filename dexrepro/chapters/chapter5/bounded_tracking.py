@@ -14,7 +14,7 @@ from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
 from dexrepro.physics.rendering import Camera
 from dexrepro.primitives import DMP, extend
 from dexrepro.robots.arm import Pose, Shape
-from dexrepro.robots.pen_kinematics import pen_arm_tip
+from dexrepro.robots.pen_arm import pen_arm_tip
 
 FIGURES = {
     "5.4": Figure(
