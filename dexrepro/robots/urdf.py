@@ -122,10 +122,10 @@ class _Tree:
         )
         ends = [self.between(a, b)[:3, 3] for a, b in zip(moving, [*moving[1:], end], strict=True)]
         bodies, doubts = zip(*(self.body(name, set(moving), tip) for name, tip in zip(moving, ends, strict=True)))
-        if doubtful := [f"{link.name} ({100 * share:.2g} %)" for link, share in zip(bodies, doubts) if share > 1e-6]:
+        if off := [f"link {link.name} by {100 * share:.2g} %" for link, share in zip(bodies, doubts) if share > 1e-6]:
             self.mended.append(
-                f"the inertia of link {', '.join(doubtful)} is none of a rigid body, by the share in brackets; up to "
-                f"{100 * ROUNDING:g} % is taken for rounding and mended"
+                f"{', '.join(off)}: no rigid body has this inertia (a moment exceeds the sum of the other two, or is "
+                f"negative, by that share of the largest); up to {100 * ROUNDING:g} % is taken for rounding and mended"
             )
         last, axis = bodies[-1], np.array(joints[-1].axis)
         if not axis @ last.inertia_matrix @ axis + last.mass * np.sum(np.cross(axis, last.com) ** 2) > 0:

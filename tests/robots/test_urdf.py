@@ -174,7 +174,7 @@ def rod(folder: Path, moments: tuple[float, ...], mass: float = 1.0, rpy: str = 
 @pytest.mark.parametrize("excess", [0.009, 0.03])
 def test_a_makers_rounding_is_mended_with_one_warning(tmp_path: Path, excess: float) -> None:
     path = rod(tmp_path, (0.003, 0.02, 0.023 / (1 - excess)))
-    with pytest.warns(UserWarning, match=rf"rod.urdf': the inertia of link bar \({100 * excess:.2g} %\)") as caught:
+    with pytest.warns(UserWarning, match=rf"rod.urdf': link bar by {100 * excess:.2g} %") as caught:
         arm = from_urdf(path, "tip")
     assert len(caught) == 1
     a, b, c = np.linalg.eigvalsh(arm.links[0].inertia_matrix)
