@@ -12,12 +12,11 @@ from typing import Generic, Protocol, TypeVar, cast, overload
 
 import numpy as np
 
-from dexrepro.arrays import Array, Real
+from dexrepro.arrays import Array, Number, Real
 from dexrepro.robots.arm import Arm, Colour, Joint, Link, Pose, Shape, Tool
 from dexrepro.robots.kinematics import forward
 
 BLUE: Colour = (0.25, 0.45, 0.75, 1.0)
-Number = TypeVar("Number", float, Array)  # of one arm, or one of each arm of a batch
 Links = tuple[Number, Number, Number, Number, Number, Number]
 Known = Links[Number] | None  # where ``links(q)`` is at hand
 Floats = Sequence[float]
@@ -179,16 +178,23 @@ class PlanarChain(Generic[Number]):
 
         damping: lambda [m] of the damped pseudo-inverse.
         """
-        c1, c2, c3, s1, s2, s3 = self.links(q)
-        x1, y1 = -s1 - s2 - s3, c1 + c2 + c3
-        x2, y2, x3, y3 = -s2 - s3, c2 + c3, -s3, c3
-        ex, ey = target[0] - self.base[0] - y1, target[1] - self.base[1] + x1
+        links = self.links(q)
+        x, y = self.forward(q, links)
+        a, b, c = self.rates(q, (target[0] - x, target[1] - y), damping, links)
+        return q[0] + a, q[1] + b, q[2] + c
+
+    def rates(
+        self, q: Row[Number], velocity: tuple[Number, Number], damping: float = 0.0, links: Known[Number] = None
+    ) -> Three[Number]:
+        """Joint rates J^T (J J^T + lambda^2 I)^-1 V [rad/s] for a tip velocity V (x, y) [m/s]; damping: lambda [m]."""
+        (x1, x2, x3), (y1, y2, y3) = self.jacobian(q, links)
+        vx, vy = velocity
         xx = x1 * x1 + x2 * x2 + x3 * x3 + damping * damping
         yy = y1 * y1 + y2 * y2 + y3 * y3 + damping * damping
         xy = x1 * y1 + x2 * y2 + x3 * y3
         determinant = xx * yy - xy * xy
-        u, v = (yy * ex - xy * ey) / determinant, (xx * ey - xy * ex) / determinant
-        return q[0] + x1 * u + y1 * v, q[1] + x2 * u + y2 * v, q[2] + x3 * u + y3 * v
+        u, v = (yy * vx - xy * vy) / determinant, (xx * vy - xy * vx) / determinant
+        return x1 * u + y1 * v, x2 * u + y2 * v, x3 * u + y3 * v
 
     def tip_torque(self, q: Row[Number], force: tuple[Number, Number], links: Known[Number] = None) -> Three[Number]:
         """Joint torques J^T F [N m] of a force (x, y) [N] at the tip."""
