@@ -158,7 +158,7 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     from dexrepro.config import compose_chapter
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
-    from dexrepro.runner import Outcome, run_plans
+    from dexrepro.runner import Outcome, run_plans, summary_rows
     from dexrepro.selection import chapters_of, of_chapter, positive_workers
 
     numbers, rest = chapters_of(overrides, extra_dir)
@@ -183,6 +183,8 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     outcome.skipped = skipped
     if not quiet:
         _print_summary(outcome)
+    for text in dict.fromkeys(text for row in summary_rows(outcome) for text in row["warnings"]):
+        err.print(f"warning: {text}", markup=False)
     return outcome
 
 

@@ -49,15 +49,6 @@ def test_matching_gives_the_fixed_network_the_adaptation_gain_of_the_broad_one()
     assert factor == pytest.approx(2.97, abs=0.1)
 
 
-def test_both_elbows_reach_the_same_point():
-    for elbow in (-1, 1):
-        arm = live({**CASES["circle_tracking"]["broad"]["arm"], "elbow": elbow})
-        q = task.joint_angles(arm, np.array([0.125, 0.2]))
-        tip = 0.2 * np.array([np.cos(q[0]) + np.cos(q.sum()), np.sin(q[0]) + np.sin(q.sum())])
-        assert tip == pytest.approx([0.125, 0.2])
-        assert np.sign(q[1]) == elbow
-
-
 @pytest.mark.parametrize("motion", ["circle", "approach"])
 def test_velocity_and_acceleration_belong_to_the_path(motion):
     path = {

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 from scipy import signal
 
-from dexrepro.chapters.chapter1.followers import Follower, solve_pose
+from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.chapters.measures import rms
 from dexrepro.control.facing import facing
@@ -26,6 +26,7 @@ from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
+from dexrepro.robots.inverse_kinematics import nearest
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.rotations import quaternion_from_rotation, rotation_from_quaternion
 
@@ -84,7 +85,7 @@ def scene(config: Config, rng: Any = None) -> World:
         arm = baxter(side)
         place, rotation = (middle(config) - half, LEVEL) if name == "leader" else (middle(config) + half, LEVEL @ FLIP)
         sensor = Sensor(force_noise=config.sensor.noise, force_delay=config.sensor.delay * config.control_period)
-        start = solve_pose(arm, posture(side), place, rotation)
+        start = nearest(arm, posture(side), place, rotation)
         noise = rng("force sensor") if rng and name == "follower" else None
         world.add_arm(name, arm, start, sensor=sensor if noise else Sensor(), rng=noise)
     radius = config.object.radius

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
-from dexrepro.chapters.chapter1.followers import Follower, solve_pose
+from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move import BALL, FLIP, LEVEL, SIDES, joint_channels
 from dexrepro.chapters.measures import rms
 from dexrepro.control.facing import facing
@@ -24,6 +24,7 @@ from dexrepro.humans.operator import minimum_jerk
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
+from dexrepro.robots.inverse_kinematics import nearest
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.rotations import quaternion_from_rotation, rotation_from_quaternion
 
@@ -87,7 +88,7 @@ def scene(config: Config) -> World:
               "follower": (centre + config.start_offset * along, LEVEL @ FLIP)}  # fmt: skip
     for name, side in SIDES.items():
         arm = baxter(side)
-        world.add_arm(name, arm, solve_pose(arm, posture(side), *starts[name]))
+        world.add_arm(name, arm, nearest(arm, posture(side), *starts[name]))
     world.add_sphere("object", config.radius, config.place, colour=BALL)
     return world
 
