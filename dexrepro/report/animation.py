@@ -16,6 +16,7 @@ from dexrepro import chapters
 from dexrepro.config import InputError, nearest
 from dexrepro.experiment import Config, Experiment, Film, Recording
 from dexrepro.physics import rendering
+from dexrepro.physics.world import World
 from dexrepro.report import style
 from dexrepro.report.damage import check_result
 from dexrepro.runner import live
@@ -87,6 +88,7 @@ def _frames(experiment: Experiment, config: Config, recording: Recording) -> Ite
     film = experiment.film
     camera = film.camera if film else rendering.Camera()
     font = ImageFont.load_default(15)
+    World.meshes = True
     with experiment.simulation.scene(config) as world:
         if experiment.function("stage"):
             recording = experiment.simulation.stage(world, recording, config)
