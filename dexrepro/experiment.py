@@ -15,11 +15,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 if TYPE_CHECKING:
+    import matplotlib.figure
     import pandas as pd
     from numpy.typing import NDArray
 
@@ -80,6 +81,12 @@ class Recording:
     def between(self, start: float, end: float = math.inf) -> NDArray[np.bool_]:
         """Mask of the samples with start <= time <= end [s]."""
         return (self.time >= start - 1e-9) & (self.time <= end + 1e-9)
+
+
+Recordings = Mapping[str, Recording]  # by case
+AllMetrics = Mapping[str, Metrics]  # by case
+Drawing: TypeAlias = "matplotlib.figure.Figure"
+Drawings: TypeAlias = "dict[str, matplotlib.figure.Figure]"  # by the number of the figure
 
 
 @dataclass(frozen=True)
