@@ -14,13 +14,15 @@ from typing import Any
 import numpy as np
 from scipy import signal
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.claims import PRINTED
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.control.facing import facing
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import angle_between, last_outside, rms
 from dexrepro.physics.elements import TipForce
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.soft_object import Cushion, SoftObject
@@ -43,7 +45,7 @@ def middle(config: Config) -> Any:
     return np.array(config.place)
 
 
-def scene(config: Config, rng: Any = None) -> World:
+def scene(config: Config, rng: Rng | None = None) -> World:
     """Two arms that just touch an object on a table."""
     world = World(step=config.step, perturbation=config.perturbation)
     half = 0.5 * config.object.length * np.array([0.0, 1.0, 0.0])
@@ -71,7 +73,7 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
     return Recording(channels | joint_channels(recording["joints"]))
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     law, dt = config.law, config.control_period
     images: dict[str, Any] = {}
     with scene(config, rng) as world:
@@ -92,11 +94,11 @@ def simulate(config: Config, rng: Any) -> Recording:
         law.reset(0.0)
         last = {"reference": 0.0, "measured": 0.0}
 
-        def lead(sense: Any) -> Any:
+        def lead(sense: Sense) -> Any:
             k = round(sense.time / dt)
             return followers["leader"].go(sense, path.position[k], rotations[k])
 
-        def follow(sense: Any) -> Any:
+        def follow(sense: Sense) -> Any:
             k = round(sense.time / dt)
             axis = path.axis[k]
             distance = float((sense.tip - path.position[k]) @ axis)
@@ -137,7 +139,7 @@ def _photographs(world: World, path: HoldPath, images: dict[str, Any]) -> list[t
     return [(round(when, 2), partial(shoot, name)) for name, when in instants.items()]
 
 
-def _fill(world: World, config: Config, rng: Any) -> None:
+def _fill(world: World, config: Config, rng: Rng) -> None:
     """The object's contacts, its varying stiffness and the shifting of what it is filled with."""
     o, noise = config.object, rng("filling")
     parts = {key: o[key] for key in ("fast", "slow", "fast_time", "slow_time")}
@@ -203,7 +205,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Any, config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     ratios: Metrics = {}
     for other in ("passive", "fixed"):
         for trial in PRINTED:

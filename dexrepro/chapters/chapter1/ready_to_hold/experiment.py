@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, joint_channels
 from dexrepro.control.facing import facing
@@ -109,7 +110,7 @@ def camera(config: Config, centre: Any, rng: np.random.Generator) -> Any:
     return np.repeat(seen, every, axis=0)[: len(centre)]
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     dt, field, plan = config.control_period, config.field, script(config)
     seen = camera(config, plan["centre"], rng("camera"))
     facings = rotation_from_quaternion(facing(quaternion_from_rotation(plan["rotation"])))

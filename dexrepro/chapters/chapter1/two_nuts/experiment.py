@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.operator import COMFORTABLE_ROLL, FOREARM_ROLL, Hand, Operator
 from dexrepro.measures import rms_distance
@@ -19,7 +20,7 @@ from dexrepro.measures import rms_distance
 RATE = 50.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     rows, shown = [], None
     people = rng("people")
     for person in range(config.operators):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2.batch import controlled_by, simulate_runs
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms
@@ -15,7 +16,7 @@ from dexrepro.measures import rms
 RATES = ("rate_1", "rate_2", "rate_3", "rate_4")
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     """Run every candidate on both trajectories, each with its object; candidate 0 is the default setting."""
     rows = [
         controlled_by(law, {**config.run, **setting, "trajectory": trajectory, "object_stiffness": stiffness}) | labels

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter4 import payload_arm
 from dexrepro.chapters.chapter4.measures import Array
 from dexrepro.experiment import Config, Metrics, Recording
@@ -21,7 +20,7 @@ scene = payload_arm.scene
 stage = payload_arm.stage
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     return payload_arm.simulate(config)
 
 

@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import crossing, letters
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.crossing import clearance
 from dexrepro.measures import rms_distance
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     hand, generator = rng("demonstration"), rng("features")
     rows, changes, reached, kept = [], [], [], None
     for draw in range(config.features.draws):

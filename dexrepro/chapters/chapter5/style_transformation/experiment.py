@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import letters
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms_distance
@@ -15,7 +16,7 @@ from dexrepro.primitives import DMP, Demonstration, extend_styles, interpolate, 
 PAIRS = (("w", "z"), ("k", "l"))
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     hand, generator = rng("demonstration"), rng("features")
     own = config.demonstrations or {}
     names = (config.hand.base, *config.hand.targets)

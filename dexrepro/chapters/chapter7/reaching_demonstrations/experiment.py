@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms, rms_distance
@@ -14,7 +15,7 @@ from dexrepro.robots.pen_arm import pen_arm_angles
 RATE = 50.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     ordinary, reactions = skills.demonstrate(config)
     stiffness, traces = skills.measure_stiffness(config)
     learned = skills.Skills(config, ordinary, reactions)

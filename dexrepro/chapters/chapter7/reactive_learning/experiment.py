@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms_distance
@@ -15,7 +16,7 @@ from dexrepro.primitives.reactive import fit_reaction, ridge_weights
 RATE = 50.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     ordinary, reactions = skills.demonstrate(config)
     learned = skills.Skills(config, ordinary, reactions)
     chosen = shown(config)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms_distance
@@ -15,7 +14,7 @@ from dexrepro.primitives.reactive import Styles
 RATE = 50.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     ordinary, reactions = skills.demonstrate(config)
     learned = skills.Skills(config, ordinary, reactions)
     chosen = [i for i, c in enumerate(skills.conditions(config)) if c.labels[:2] in subset(config)]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms_distance
@@ -20,7 +21,7 @@ METHODS = {"fuzzy": "fuzzy rules", "nearest": "nearest", "nearest_same": "neares
 Predictor = Callable[[dict[str, float], np.ndarray, list[skills.Condition], Config], np.ndarray]
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     ordinary, reactions = skills.demonstrate(config)
     learned = skills.Skills(config, ordinary, reactions)
     known = skills.conditions(config)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter8.task import TaskController, beyond, circle, two_link
 from dexrepro.control.barrier_tracking import BarrierTracking, barrier_energy
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import rms, rms_length
 from dexrepro.networks import AdaptiveNetwork, GrowingGaussians
 from dexrepro.physics.elements import JointLoad, joint_friction
@@ -32,7 +33,7 @@ def scene(config: Config) -> World:
     return world
 
 
-def simulate(config: Config, rng: Callable[[str], np.random.Generator]) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     gravity = (0.0, -config.gravity, 0.0)
     arm = two_link(config.arm)
     factor = match_rates(config) if config.match else 1.0
@@ -112,7 +113,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     return metrics
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Error of the fixed network over that of the grown one, on each axis, where both cases were run."""
     pairs = {
         "unit": ("broad_unit", "fuzzy_unit"),
