@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -17,19 +18,45 @@ ROOT = Path(dexrepro.__file__).parent.parent
 TOY = Path(__file__).parent / "toy"
 
 
-@pytest.fixture
-def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    """Make chapter 90 the only chapter, work in an empty folder, and return that folder."""
-    monkeypatch.setattr(config, "config_dir", lambda: TOY / "conf")
-    monkeypatch.setattr(chapters, "__path__", [str(TOY)])
-    monkeypatch.chdir(tmp_path)
-    for function in (chapters.numbers, chapters.load, plan.source_digest):
-        function.cache_clear()
-    yield tmp_path
+@contextlib.contextmanager
+def toy_chapter(folder: Path) -> Iterator[Path]:
+    """Make chapter 90 the only chapter, and work in a folder."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(config, "config_dir", lambda: TOY / "conf")
+        patch.setattr(chapters, "__path__", [str(TOY)])
+        patch.chdir(folder)
+        for function in (chapters.numbers, chapters.load, plan.source_digest):
+            function.cache_clear()
+        yield folder
     for function in (chapters.numbers, chapters.load, plan.source_digest):
         function.cache_clear()
     for name in [name for name in sys.modules if name.startswith("dexrepro.chapters.chapter90")]:
         del sys.modules[name]
+
+
+@pytest.fixture
+def toy(tmp_path: Path) -> Iterator[Path]:
+    """Make chapter 90 the only chapter, work in an empty folder, and return that folder."""
+    with toy_chapter(tmp_path) as folder:
+        yield folder
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A report of chapter 90, with a film, built once for the tests of a module."""
+    from PIL import Image
+
+    from dexrepro.report import page
+    from dexrepro.runner import run_plans
+
+    with toy_chapter(tmp_path_factory.mktemp("toy")) as folder:
+        plans, _ = plan.plan_chapter("90")
+        run_plans(plans, workers=1, force=False)
+        films = folder / "results/chapter90/decay/animation"
+        films.mkdir()
+        for name in ("plain.gif", "plain.png"):
+            Image.new("RGB", (80, 33), "white").save(films / name)
+        yield page.build(Path("results")).parent.resolve()
 
 
 @pytest.fixture

@@ -45,6 +45,11 @@ def index(*roots: Path) -> list[Mention]:
     return sorted(found, key=lambda m: (*place(m.equation), list(KINDS).index(m.kind), m.path, m.line))
 
 
+def numbers(text: str) -> list[str]:
+    """The equations that a text mentions, each once, ranges expanded."""
+    return list(dict.fromkeys(equation for match in _MENTION.finditer(text) for equation in _expanded(match)))
+
+
 def _own() -> set[Path]:
     package = Path(__file__).parent.parent
     return {package} if config_dir().is_relative_to(package) else {package, config_dir()}
