@@ -34,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.path.insert(0, "")  # a user's own classes, named by _target_
     try:
-        return _dispatch(arguments)
+        return _dispatch(_experiments_option(arguments))
     except KeyboardInterrupt:
         err.print("interrupted; the same command completes what is missing", markup=False)
         return INTERRUPTED
@@ -57,9 +57,29 @@ def _dispatch(arguments: list[str]) -> int:
     return int(options.function(options))
 
 
+def _experiments_option(arguments: list[str]) -> list[str]:
+    """Add the folders that ``--experiments DIR`` names, before or behind any command; the other arguments."""
+    from dexrepro import chapters
+
+    parser = argparse.ArgumentParser(prog="dexrepro", add_help=False, allow_abbrev=False)
+    parser.add_argument("--experiments", action="append", default=[], type=Path, metavar="DIR")
+    options, rest = parser.parse_known_args(arguments)
+    for folder in options.experiments:
+        if not folder.is_dir():
+            raise InputError(f"--experiments = {folder} is not allowed: there is no such folder")
+        known = chapters.numbers()
+        chapters.add(folder)
+        if chapters.numbers() == known and not chapters.is_added(known[0]):
+            raise InputError(
+                f"--experiments = {folder} adds nothing: an experiment is a folder in it with experiment.py"
+            )
+    return rest
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="dexrepro", description="Reproduce the book's figures and check its claims.")
     parser.add_argument("--version", action="version", version=f"dexrepro {__version__}")
+    parser.add_argument("--experiments", metavar="DIR", help="experiments of your own, beside the book's")
     commands = parser.add_subparsers(required=True, metavar="command")
     commands.add_parser("run", help="simulate, measure and draw (see: dexrepro run --help)", add_help=False)
     selection = argparse.ArgumentParser(add_help=False)
@@ -82,6 +102,7 @@ def _parser() -> argparse.ArgumentParser:
     report.set_defaults(function=report_command)
 
     study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
+    study.add_argument("--update", action="store_true", help="renew the study that is shipped")
     study.set_defaults(function=study_command)
 
     render = commands.add_parser("render", parents=[selection], help="animate recorded runs (case=NAME format=gif|mp4)")
@@ -157,7 +178,7 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     from dexrepro.config import compose_chapter
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
-    from dexrepro.runner import Outcome, run_plans
+    from dexrepro.runner import Outcome, run_plans, summary_rows
     from dexrepro.selection import chapters_of, of_chapter, positive_workers
 
     numbers, rest = chapters_of(overrides, extra_dir)
@@ -182,6 +203,8 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     outcome.skipped = skipped
     if not quiet:
         _print_summary(outcome)
+    for text in dict.fromkeys(text for row in summary_rows(outcome) for text in row["warnings"]):
+        err.print(f"warning: {text}", markup=False)
     return outcome
 
 
@@ -260,13 +283,10 @@ def check_command(options: argparse.Namespace) -> int:
     from dexrepro.selection import existing, selected
 
     numbers, only, results, workers, _ = selected(options.selection)
-    if options.update and only:
-        raise InputError("--update renews whole chapters; leave out only= and figure=")
     if options.update:
         for number in numbers:
-            for line in baselines.update_chapter(number, results, accept=options.accept, workers=workers):
+            for line in baselines.update_chapter(number, results, only, accept=options.accept, workers=workers):
                 out.print(line, markup=False)
-            out.print(f"wrote {baselines.baseline_dir() / f'chapter{number}.json'}", markup=False)
         return OK
     try:
         reports = [baselines.check_chapter(number, existing(results), only) for number in numbers]
@@ -394,7 +414,7 @@ def study_command(options: argparse.Namespace) -> int:
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
             try:
-                path = study.run(number, name, samples, results, workers=workers, hours=hours)
+                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update)
             except BrokenProcessPool:
                 err.print("a process of the study was killed; the same command completes what is missing", markup=False)
                 return FAILED
@@ -434,6 +454,8 @@ def _study_jobs(options: argparse.Namespace) -> int:
     selection = ",".join(json.dumps(text) for text in words)
     results = [text for text in words if text.startswith("results=")]
     status = _launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
+    if options.update and status == OK:
+        return study_command(argparse.Namespace(selection=words, update=True))
     for name in names:
         if (path := study.summary_file(name, folder)).exists():
             _print_study(name, path, folder)
@@ -444,7 +466,7 @@ def _study_job(config: Any) -> None:
     from dexrepro.sweep import JobFailed, enter_launch_folder
 
     enter_launch_folder()
-    if study_command(argparse.Namespace(selection=["workers=1", *config.selection])) != OK:
+    if study_command(argparse.Namespace(selection=["workers=1", *config.selection], update=False)) != OK:
         raise JobFailed("a process was killed; the same command completes what is missing")
 
 
@@ -453,7 +475,7 @@ def _print_study(name: str, path: Path, results: Path) -> None:
     from dexrepro.storage import read_json
 
     summary = read_json(path)
-    drawing = studies.save(summary, results / "study" / f"{name}.svg")
+    drawing = studies.save(summary, results / "studies" / f"{name}.svg")
     out.print(f"{name}: {path}, drawn in {drawing}", markup=False)
     for claim, row in summary["claims"].items():
         interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"

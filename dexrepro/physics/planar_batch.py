@@ -21,7 +21,7 @@ class PlanarPairs:
 
     def __init__(
         self,
-        chain: PlanarChain,
+        chain: PlanarChain[Array],
         position: Array,
         *,
         stiffness: Real,

@@ -46,7 +46,7 @@ class Contents:
         for experiment in made:
             check_result(self.place / experiment.name, "metrics.json", "claims.json")
             self.metrics |= read_json(self.place / experiment.name / "metrics.json")
-        self.definitions = relations.definitions(self._package()) if made else {}
+        self.definitions = relations.definitions(self.chapter.folder) if made else {}
         self.errata = {item.id: self._erratum(item) for item in self.chapter.errata} if made else {}
         self.experiments = [self._experiment(experiment) for experiment in made]
         self.untestable = [
@@ -71,10 +71,6 @@ class Contents:
             "untestable": self.untestable,
             "runs": [run for run in runs if run["chapter"] == self.number],
         }
-
-    def _package(self) -> Path:
-        file = Path(str(self.chapter.experiments[0].module.__file__))
-        return next(parent for parent in file.parents if parent.name == f"chapter{self.number}")
 
     def _line(self, identifier: str) -> dict[str, Any] | None:
         found = self.definitions.get(identifier)
@@ -181,7 +177,7 @@ class Contents:
 
     def _code(self, experiment: Experiment) -> dict[str, Any]:
         """Lines of the experiment's functions and of the laws it names, and the equations that these mention."""
-        functions = [getattr(experiment.module, name, None) for name in ("scene", "simulate", "measure")]
+        functions = [experiment.function(name) for name in ("scene", "simulate", "measure")]
         block = [resolved_block(self.composed, experiment.name), experiment_cases(self.composed, experiment.name)]
         laws = relations.laws(block)
         own = {sources.place(thing) for thing in functions if thing}

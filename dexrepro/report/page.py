@@ -18,7 +18,6 @@ from dexrepro.report.damage import check_result
 from dexrepro.report.sources import Sources
 from dexrepro.storage import read_json, whole_folder
 
-BOOK = {"title": "Advanced Teleoperation and Robot Learning for Dexterous Manipulation", "authors": "Yang, Lu, Wang"}
 KINDS = {
     "error": "Inconsistent with the book's own equations: derived, with measured evidence.",
     "gap": "Something an implementation needs is not printed.",
@@ -47,7 +46,7 @@ class _Report:
             "breakable": words.breakable, "number": words.number, "short_number": words.short_number,
             "percent": words.percent,
         }  # fmt: skip
-        self.templates.globals |= {"book": BOOK, "VERDICTS": verdicts.VERDICTS, "KINDS": KINDS}
+        self.templates.globals |= {"book": chapters.book(), "VERDICTS": verdicts.VERDICTS, "KINDS": KINDS}
         self.search: list[tuple[str, str, str, str]] = []
         self.code = Sources(folder)
 

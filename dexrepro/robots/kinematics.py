@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from dexrepro.arrays import Array
 from dexrepro.robots.arm import Arm
-
-Array = NDArray[np.float64]
 
 
 def joint_frames(arm: Arm, position: ArrayLike) -> Array:

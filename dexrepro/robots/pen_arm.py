@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.robots.arm import Arm, Colour, Joint, Link, Pose, Shape, Tool
 
-Array = NDArray[np.float64]
 WHITE: Colour = (0.85, 0.85, 0.88, 1.0)
 DARK: Colour = (0.2, 0.2, 0.25, 1.0)
 LENGTH = 0.1335  # m, both links, device data
