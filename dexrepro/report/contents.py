@@ -13,8 +13,9 @@ import pandas as pd
 from PIL import Image
 
 from dexrepro import chapters
+from dexrepro.claims import Claim, Erratum
 from dexrepro.config import compose_chapter, experiment_cases, provenance, resolved_block
-from dexrepro.experiment import Claim, Erratum, Experiment
+from dexrepro.experiment import Experiment
 from dexrepro.report import equations, explorer, parameters, relations, sources, studies, verdicts, words
 from dexrepro.report.damage import check_result
 from dexrepro.report.style import file_stem
@@ -50,7 +51,7 @@ class Contents:
         self.errata = {item.id: self._erratum(item) for item in self.chapter.errata} if made else {}
         self.experiments = [self._experiment(experiment) for experiment in made]
         self.untestable = [
-            self._claim(claim.evaluate({}), claim) for claim in self.chapter.claims if claim.not_testable
+            self._claim(claim.evaluate({}).as_dict(), claim) for claim in self.chapter.claims if claim.not_testable
         ]
 
     def page(self, runs: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -142,10 +143,9 @@ class Contents:
         touching = relations.errata_of(claim, self.chapter.errata, self.composed) if claim else []
         text = " ".join([entry["statement"], entry["note"], entry["where"], *(item.equation for item in touching)])
         names = [name.split(".") for name in entry["values"]]
-        shown = {**entry, "study": row, "robustness": verdicts.robustness(entry, row), "chapter": self.number}
+        shown = {**entry, "study": row, "robustness": verdicts.robustness(row), "chapter": self.number}
         return {
             **shown,
-            "category": verdicts.category(shown),
             "strength": verdicts.strength(shown),
             "severe": verdicts.is_severe(shown),
             "noticed": verdicts.noticed(shown),

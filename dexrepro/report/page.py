@@ -46,7 +46,12 @@ class _Report:
             "breakable": words.breakable, "number": words.number, "short_number": words.short_number,
             "percent": words.percent,
         }  # fmt: skip
-        self.templates.globals |= {"book": chapters.book(), "VERDICTS": verdicts.VERDICTS, "KINDS": KINDS}
+        self.templates.globals |= {
+            "book": chapters.book(),
+            "VERDICTS": verdicts.VERDICTS,
+            "MARKS": verdicts.MARKS,
+            "KINDS": KINDS,
+        }
         self.search: list[tuple[str, str, str, str]] = []
         self.code = Sources(folder)
 
@@ -100,7 +105,7 @@ class _Report:
             page, number = f"chapter{chapter['number']}.html", chapter["number"]
             self._searchable("chapter", f"Chapter {number}: {chapter['title']}", page)
             for claim in chapter["claims"]:
-                known = " ".join(claim[key] for key in ("category", "robustness", "where", "noticed", "experiment"))
+                known = " ".join(claim[key] for key in ("verdict", "robustness", "where", "noticed", "experiment"))
                 text = f"{claim['id']} {claim['verdict']}: {claim['statement']}"
                 self._searchable("claim", text, f"{page}#{claim['id']}", f"{known} {claim['source']} {claim['figure']}")
             for item in chapter["errata"]:

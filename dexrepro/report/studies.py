@@ -23,7 +23,7 @@ LOOKS: dict[str, dict[str, Any]] = {  # the book's claims and ours, told apart b
 
 def finding(study: Mapping[str, Any]) -> str:
     """The study in one sentence."""
-    words = [verdicts.robustness({}, row) for row in study["claims"].values()]
+    words = [verdicts.robustness(row) for row in study["claims"].values()]
     counts = [f"{words.count(word)} {word}" for word in ("robust", "fragile", "open") if word in words]
     return f"Of {len(words)} claims over {study['samples']} samples: {', '.join(counts)}"
 

@@ -141,7 +141,7 @@ def test_the_search_knows_verdicts_equations_and_says_when_it_cut(browser: Brows
 
 def test_the_list_of_all_claims_is_filtered(browser: Browser, report: Path) -> None:
     browser.open(report / "claims.html")
-    browser.js("filter.elements.category.value = 'not reproduced'; filter.dispatchEvent(new Event('input'))")
+    browser.js("filter.elements.verdict.value = 'not reproduced'; filter.dispatchEvent(new Event('input'))")
     rows = browser.js("[...document.querySelectorAll('.answers tbody tr:not([hidden])')].map((r) => r.textContent)")
     assert len(rows) == 1
     assert "C90.02" in rows[0]

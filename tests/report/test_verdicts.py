@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from dexrepro import chapters
+from dexrepro.claims import Claim, Erratum, less
 from dexrepro.config import compose_chapter
-from dexrepro.experiment import Claim, Erratum, less
 from dexrepro.report import relations, verdicts
 
 
@@ -36,7 +36,7 @@ SEVERE = {"control": "b < a", "control_margin": -0.5}
         ({**SEVERE, "robustness": "robust"}, "strong", True),
         ({**SEVERE, "robustness": "robust", "verdict": "after correction"}, "strong", True),
         ({**SEVERE, "robustness": "robust", "verdict": "not reproduced"}, "strong", False),
-        ({**SEVERE, "robustness": "robust", "by_construction": "the generator"}, "strong", False),
+        ({**SEVERE, "robustness": "robust", "verdict": "by construction"}, "strong", False),
         ({"control": "b < a", "control_margin": 0.2, "robustness": "robust"}, "partial", False),
         ({"control": "b < a", "control_margin": None, "robustness": "robust"}, "partial", False),
     ],
@@ -46,24 +46,16 @@ def test_only_what_holds_was_tested_and_is_robust_makes_the_headline(values, str
     assert verdicts.is_headline(claim(**values)) is headline
 
 
-def test_by_construction_counts_apart_but_a_failure_stays_one() -> None:
-    counts = verdicts.score([claim(by_construction="x"), claim(by_construction="x", verdict="not reproduced")])[
-        "counts"
-    ]
-    assert (counts["by construction"], counts["not reproduced"], counts["reproduced"]) == (1, 1, 0)
+def test_each_verdict_counts_apart_and_ours_beside_them() -> None:
+    score = verdicts.score([claim(verdict="by construction"), claim(robustness="robust"), claim(source="ours")])
+    assert (score["counts"]["by construction"], score["counts"]["reproduced"]) == (1, 1)
+    assert (score["total"], score["robust"], score["ours"]) == (2, 1, (1, 1))
 
 
 def test_a_control_that_holds_is_said_to_hold() -> None:
     assert verdicts.noticed(claim(**SEVERE)) == "yes: the control fails"
     assert verdicts.noticed(claim(control="b < a", control_margin=0.1)).startswith("no")
     assert "identity" in verdicts.noticed(claim(no_control="an identity"))
-
-
-@pytest.mark.parametrize(("low", "high", "word"), [(0.86, 1, "robust"), (0.2, 0.8, "fragile"), (0.6, 0.95, "open")])
-def test_robustness_follows_the_interval_unless_it_was_evaluated(low: float, high: float, word: str) -> None:
-    assert verdicts.robustness({}, {"low": low, "high": high}) == word
-    assert verdicts.robustness({"robustness": "open"}, {"low": low, "high": high}) == "open"
-    assert verdicts.robustness({}, None) == ""
 
 
 def test_the_answer_names_what_fails() -> None:

@@ -118,7 +118,7 @@ if (filter) {
     const words = wanted.words.toLowerCase().split(/\s+/).filter(Boolean);
     let shown = 0;
     for (const row of rows) {
-      const fits = ["category", "chapter", "strength", "source"].every((key) => !wanted[key] || row.dataset[key] === wanted[key])
+      const fits = ["verdict", "chapter", "strength", "source"].every((key) => !wanted[key] || row.dataset[key] === wanted[key])
         && words.every((word) => row.textContent.toLowerCase().includes(word));
       row.hidden = !fits;
       shown += fits;
