@@ -320,8 +320,9 @@ def _print_check(report: dict[str, Any]) -> None:
 def draw_command(options: argparse.Namespace) -> int:
     """Draw figures and tables again from what is on disk."""
     from dexrepro.plan import select
+    from dexrepro.pool import sentence
     from dexrepro.report.damage import check_result
-    from dexrepro.runner import redraw, sentence
+    from dexrepro.runner import redraw
     from dexrepro.selection import existing, selected
 
     numbers, only, results, _, _ = selected(options.selection)
@@ -399,8 +400,6 @@ def render_command(options: argparse.Namespace) -> int:
 
 def study_command(options: argparse.Namespace) -> int:
     """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=200] [hours=H] [jobs=N hydra/launcher=...]``."""
-    from concurrent.futures.process import BrokenProcessPool
-
     from dexrepro import study
     from dexrepro.selection import selected
 
@@ -412,8 +411,8 @@ def study_command(options: argparse.Namespace) -> int:
         for name in study.experiments_of(number, only, values.get("claim")):
             try:
                 path = study.run(number, name, samples, results, workers=workers, hours=hours)
-            except BrokenProcessPool:
-                err.print("a process of the study was killed; the same command completes what is missing", markup=False)
+            except study.SamplesFailed as error:
+                err.print(str(error), markup=False)
                 return FAILED
             _print_study(name, path, results)
     return OK

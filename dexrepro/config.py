@@ -32,7 +32,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from dexrepro import chapters
 
-SETTINGS = ("only", "figure", "seed", "results", "workers", "force", "quiet", "gui")
+SETTINGS = ("only", "figure", "seed", "results", "workers", "case_timeout", "force", "quiet", "gui")
 
 
 class InputError(Exception):
@@ -265,6 +265,9 @@ def check_settings(composed: Mapping[str, Any]) -> None:
     scene = composed.get("scene")
     if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]*", name := str(scene.get("name"))):
         raise InputError(f"scene.name = {name} is not allowed: it names a folder; use letters, digits, '_' and '-'")
+    timeout = composed["case_timeout"]
+    if timeout is not None and not (_number(timeout) and 0 < timeout < math.inf):
+        raise InputError(f"case_timeout = {timeout} is not allowed: it must be a number of seconds greater than 0")
     for key in ("force", "quiet", "gui"):
         if not isinstance(composed[key], bool):
             raise InputError(f"{key} = {composed[key]} is not allowed: it must be true or false")

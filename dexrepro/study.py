@@ -13,7 +13,6 @@ import json
 import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import as_completed
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -24,6 +23,8 @@ from scipy import stats
 
 from dexrepro import chapters
 from dexrepro.baselines import baseline_dir
+from dexrepro.case import generator, live
+from dexrepro.case import run as run_case
 from dexrepro.config import (
     InputError,
     Provenance,
@@ -34,9 +35,13 @@ from dexrepro.config import (
     resolved_block,
 )
 from dexrepro.experiment import Claim, Config, Metrics
-from dexrepro.pool import pool
-from dexrepro.runner import flat, generator, live, summarise
+from dexrepro.pool import COMPLETES, Failure, Pool
+from dexrepro.runner import flat, summarise
 from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
+
+
+class SamplesFailed(Exception):
+    """Samples of a study are missing; the sentence says why, and the others are stored."""
 
 
 def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list[str]:
@@ -110,8 +115,7 @@ def evaluate(chapter: str, experiment: str, index: int) -> dict[str, Any]:
     for case in _cases_of(claims, cases):
         try:
             config = live({**cases[case], "perturbation": 0.0, "seed": seed, "case": case})
-            recording = definition.simulation.simulate(config, lambda purpose: generator(seed, experiment, purpose))
-            metrics[case] = definition.simulation.measure(recording, config)
+            metrics[case] = run_case(definition, config, seed)[1]
         except Exception as problem:
             errors.append(f"{case}: {type(problem).__name__}: {problem}")
     if len(metrics) == len(cases):
@@ -153,20 +157,30 @@ def run(
     workers: int | None = None,
     hours: float | None = None,
 ) -> Path:
-    """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path."""
+    """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path.
+
+    Raises SamplesFailed, after that, where a process died or a sample could not be stored.
+    """
     target = summary_file(experiment, results)
     for folder in (target.parent, _locks(results)):
         folder.mkdir(parents=True, exist_ok=True)
     done = _kept(chapter, experiment, results)
     missing = [index for index in range(samples) if index not in done]
     deadline = time.time() + 3600 * hours if hours else float("inf")
-    with pool(workers) as submit:
-        for future in as_completed([submit(contribute, chapter, experiment, i, results, deadline) for i in missing]):
-            future.result()
+    with Pool(workers) as pool:
+        for index in missing:
+            pool.add(index, contribute, chapter, experiment, index, results, deadline)
+        failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
     with locked(_locks(results)):  # who ends last sees every sample
         entries = _kept(chapter, experiment, results).values()
         write_text(_lines(target), "".join(map(_line, entries)))
         write_json(target, summary(chapter, experiment, list(entries)))
+    if failed:
+        index, reason = failed[0]
+        more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
+        raise SamplesFailed(
+            f"sample {index}{more} of {experiment} failed: {reason.removesuffix(f'; {COMPLETES}')}; {COMPLETES}"
+        )
     return target
 
 

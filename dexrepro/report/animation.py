@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from dexrepro import chapters
+from dexrepro.case import live
 from dexrepro.config import InputError, nearest
 from dexrepro.experiment import Config, Experiment, Film, Recording
 from dexrepro.physics import rendering
+from dexrepro.recordings import load_recording
 from dexrepro.report import style
 from dexrepro.report.damage import check_result
-from dexrepro.runner import live
-from dexrepro.storage import load_recording, read_json, read_yaml
+from dexrepro.storage import read_json, read_yaml
 
 SIZE = (400, 330)
 FRAMES = 60  # at the most

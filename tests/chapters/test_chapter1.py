@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 from scipy.spatial.transform import Rotation
 
+from dexrepro.case import generator, live
 from dexrepro.chapters.chapter1.dartboard import experiment as dartboard
 from dexrepro.chapters.chapter1.followers import Follower, rotation_error, solve_pose
 from dexrepro.chapters.chapter1.force_tracking import experiment as force_tracking
@@ -22,7 +23,6 @@ from dexrepro.control.holding import AutoregressiveHolding, FixedDistance
 from dexrepro.physics.soft_object import Cushion
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
-from dexrepro.runner import generator, live
 
 
 @cache

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dexrepro.case import live
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.chapters.chapter7.fuzzy_generalisation import experiment as fuzzy_generalisation
 from dexrepro.chapters.chapter7.impedance_stability import experiment as impedance_stability
@@ -16,7 +17,6 @@ from dexrepro.chapters.chapter7.style_separation import experiment as style_sepa
 from dexrepro.chapters.chapter7.unseen_conditions import experiment as unseen_conditions
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
-from dexrepro.runner import live
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from dexrepro import config
+from dexrepro.case import live
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.grasp_through_opening import experiment as joined
-from dexrepro.runner import live
 from dexrepro.vision.tabletop import Item
 
 RED = (0.9, 0.1, 0.1, 1.0)
