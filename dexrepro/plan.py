@@ -223,6 +223,18 @@ def presentation(experiment: Experiment) -> str:
     return closure.digest([*roots, *(("dexrepro.runner", name) for name in ("present", "summarise", "flat"))])
 
 
+def outdated(plan: Plan, run: Mapping[str, Any]) -> str:
+    """Why a result with this run.json is not what the present configuration and code give ("" where it is)."""
+    was: Mapping[str, Any] = run.get("contents", {})
+    other = [case for case in {**was, **plan.contents} if was.get(case) != plan.contents.get(case)]
+    if other:
+        more = f" and {len(other) - 1} more cases" if len(other) > 1 else ""
+        return f"{other[0]}{more} of another configuration or code than the present"
+    if run.get("presentation") != plan.presentation:
+        return "claims, tables and figures of other code than the present; run: dexrepro draw"
+    return ""
+
+
 def own_digest(values: Mapping[str, Any]) -> str:
     """Hash of the user's files that a configuration names: data, and modules of classes with what is beside them.
 
