@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 EXTRAS ?= dev
 
-.PHONY: figures test check lint bench wheel clean
+.PHONY: figures test check lint bench mutation wheel clean
 
 figures: .venv/ready
 	$(BIN)/dexrepro run
@@ -24,6 +24,12 @@ check: .venv/ready
 
 bench: .venv/bench
 	$(BIN)/python -m pytest tests/bench -q -s -p no:xdist -o python_files='bench_*.py'
+
+# Wrong laws that the tests have to notice: make mutation PLACES="control/holding networks" SHARE=1
+PLACES ?= control primitives networks physics
+SHARE ?= 0.1
+mutation: .venv/ready
+	$(BIN)/python tests/mutation/mutate.py $(PLACES) --share $(SHARE)
 
 wheel: .venv/ready
 	$(BIN)/python -m build

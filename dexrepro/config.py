@@ -260,7 +260,9 @@ def check_settings(composed: Mapping[str, Any]) -> None:
         raise InputError(f"'{removed[0]}' cannot be left out; give it a value instead")
     seed, results, figure = composed["seed"], composed["results"], composed["figure"]
     if not _whole(seed) or not 0 <= seed < 1 << 64:
-        raise InputError(f"seed = {str(seed)[:40]} is not allowed: it must be a whole number of 0 or greater, below 2^64")
+        raise InputError(
+            f"seed = {str(seed)[:40]} is not allowed: it must be a whole number of 0 or greater, below 2^64"
+        )
     if not isinstance(results, str) or not results:
         raise InputError(f"results = {results!r} is not allowed: it must be the name of a folder")
     if isinstance(figure, list):

@@ -21,6 +21,7 @@ def test_the_wheel_works_without_the_checkout(tmp_path: Path) -> None:
     shipped = {path.name for path in (ROOT / "conf/chapter").rglob("*.yaml")}
     assert {path.name for path in (site / "dexrepro/conf/chapter").rglob("*.yaml")} == shipped
     assert list((site / "dexrepro/baselines").glob("chapter*/*.json"))
+    assert (site / "dexrepro/py.typed").is_file()
     run = [sys.executable, "-m", "dexrepro", "run", "chapter=2", "--cfg", "job"]
     env = {**os.environ, "PYTHONPATH": str(site)}
     done = subprocess.run(run, cwd=empty, env=env, capture_output=True, text=True, check=False, timeout=120)

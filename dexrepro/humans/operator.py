@@ -14,12 +14,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import signal
 
+from dexrepro.arrays import Array
 from dexrepro.control.pose_transformation import scaled_path
-
-Array = NDArray[np.float64]
 
 COMFORTABLE_ROLL = np.deg2rad(40.0)
 FOREARM_ROLL = np.deg2rad(80.0)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dexrepro.networks.basis import Array, Basis
+from dexrepro.arrays import Array
+from dexrepro.networks.basis import Basis
 
 
 class AdaptiveNetwork:

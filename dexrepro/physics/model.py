@@ -7,13 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 import pybullet as bullet
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.physics.loading import connect, load_arm
-from dexrepro.physics.plant import EndPoint, rotated
+from dexrepro.physics.plant import EndPoint
 from dexrepro.robots.arm import Arm
-
-Array = NDArray[np.float64]
+from dexrepro.robots.rotations import rotated
 
 
 class RigidBodyModel:

@@ -11,9 +11,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.primitives.barrier import Array, Constraint, Gains, gain
+from dexrepro.arrays import Array, Mask
+from dexrepro.primitives.barrier import Constraint, Gains, gain
 
 
 @dataclass(frozen=True)
@@ -124,11 +124,12 @@ class Path:
     velocity: Array
     distance: Array
     lyapunov: Array
-    projected: NDArray[np.bool_]
-    altered: NDArray[np.bool_]
+    projected: Mask
+    altered: Mask
 
     @property
-    def defined(self) -> NDArray[np.bool_]:
+    def defined(self) -> Mask:
+        """Where the state is within the barrier's domain, (n, ...)."""
         return np.isfinite(self.distance)
 
 
@@ -219,7 +220,7 @@ def _moment(
     return now, stabiliser, kn
 
 
-def _project(moved: Array, error: Array, target: Array, margin: Array, rate: float) -> tuple[Array, NDArray[np.bool_]]:
+def _project(moved: Array, error: Array, target: Array, margin: Array, rate: float) -> tuple[Array, Mask]:
     """Put positions beyond the discrete barrier back on its sphere about the target."""
     offset = moved - target
     distance = np.sqrt(_dot(offset, offset))

@@ -8,14 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.primitives.constrained import Skill
 
-Array = NDArray[Any]
 Term = Callable[[int, Array, Array], Array]
 
 

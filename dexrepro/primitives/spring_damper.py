@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import expm
 from scipy.signal import lfilter
 
-Array = NDArray[Any]
+from dexrepro.arrays import Array
 
 
 @dataclass(frozen=True)

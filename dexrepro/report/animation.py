@@ -41,7 +41,7 @@ def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
     check_result(folder, "config.yaml", series=True)
     run = read_json(folder / "run.json")
     experiment = chapters.load(run["chapter"]).experiment(run["experiment"])
-    if not experiment.has("scene"):
+    if not experiment.function("scene"):
         raise InputError(f"experiment '{experiment.name}' has no scene to render")
     if kind == "mp4" and not shutil.which("ffmpeg"):
         raise InputError("format = mp4 is not allowed: it needs the program ffmpeg; use format=gif")
@@ -89,7 +89,7 @@ def _frames(experiment: Experiment, config: Config, recording: Recording) -> Ite
     camera = film.camera if film else rendering.Camera()
     font = ImageFont.load_default(15)
     with experiment.simulation.scene(config) as world:
-        if experiment.has("stage"):
+        if experiment.function("stage"):
             recording = experiment.simulation.stage(world, recording, config)
         start, end = (film.span if film else None) or (recording.time[0], recording.time[-1])
         shown = recording.time[recording.between(start, end)]

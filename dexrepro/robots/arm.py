@@ -13,8 +13,10 @@ from itertools import pairwise
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
+
+from dexrepro.arrays import Array
 
 Vector = tuple[float, float, float]
 Colour = tuple[float, float, float, float]
@@ -34,7 +36,7 @@ class Pose:
     rpy: Vector = (0.0, 0.0, 0.0)
 
     @cached_property
-    def matrix(self) -> NDArray[np.float64]:
+    def matrix(self) -> Array:
         """Homogeneous transform, shape (4, 4), that takes child coordinates to the parent frame."""
         result = np.eye(4)
         result[:3, :3] = Rotation.from_euler("xyz", self.rpy).as_matrix()
@@ -80,6 +82,7 @@ class Shape:
         return cls("capsule", (radius, math.hypot(x, y, z)), Pose(middle, (0.0, pitch, yaw)), colour)
 
     def urdf(self) -> str:
+        """Its ``<visual>`` and, where it collides, ``<collision>`` of a URDF link."""
         names = {"box": "size", "sphere": "radius"}
         if self.kind in names:
             attributes = f"{names[self.kind]}={quoteattr(_numbers(self.size))}"
@@ -115,7 +118,8 @@ class Link:
             )
 
     @property
-    def inertia_matrix(self) -> NDArray[np.float64]:
+    def inertia_matrix(self) -> Array:
+        """Inertia (3, 3) [kg m^2] about the centre of mass, along the axes of the link frame."""
         xx, xy, xz, yy, yz, zz = self.inertia
         return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
@@ -125,6 +129,7 @@ class Link:
         return replace(self, mass=factor * self.mass, inertia=scaled)
 
     def urdf(self) -> str:
+        """Its ``<link>`` of a URDF file."""
         names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
         inertia = " ".join(f"{name}='{value!r}'" for name, value in zip(names, self.inertia, strict=True))
         inertial = f"{_origin(Pose(self.com))}<mass value='{self.mass!r}'/><inertia {inertia}/>"
@@ -191,38 +196,38 @@ class Arm:
         return len(self.joints)
 
     @cached_property
-    def effort(self) -> NDArray[np.float64]:
+    def effort(self) -> Array:
         """Largest joint torques [N m], shape (n,)."""
         return np.array([joint.effort for joint in self.joints])
 
     @cached_property
-    def lower(self) -> NDArray[np.float64]:
+    def lower(self) -> Array:
         """Lower joint limits [rad], shape (n,)."""
         return np.array([joint.lower for joint in self.joints])
 
     @cached_property
-    def upper(self) -> NDArray[np.float64]:
+    def upper(self) -> Array:
         """Upper joint limits [rad], shape (n,)."""
         return np.array([joint.upper for joint in self.joints])
 
     @cached_property
-    def speed(self) -> NDArray[np.float64]:
+    def speed(self) -> Array:
         """Largest joint speeds [rad/s], shape (n,)."""
         return np.array([joint.velocity for joint in self.joints])
 
     @cached_property
-    def origins(self) -> tuple[NDArray[np.float64], ...]:
+    def origins(self) -> tuple[Array, ...]:
         """Transforms parent -> child at angle 0, (4, 4) each; the first one starts in the world frame."""
         first, *rest = (joint.origin.matrix for joint in self.joints)
         return (self.base.matrix @ first, *rest)
 
     @cached_property
-    def axes(self) -> NDArray[np.float64]:
+    def axes(self) -> Array:
         """Joint axes in the frames of their links, shape (n, 3)."""
         return np.array([joint.axis for joint in self.joints])
 
     @cached_property
-    def turns(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def turns(self) -> tuple[Array, Array, Array]:
         """O, O K and O K^2 of every joint, (n, 4, 4) each: its origin and the cross-product matrix of its axis.
 
         Turned by an angle q, the transform is O + sin(q) O K + (1 - cos(q)) O K^2 (Rodrigues' formula).
@@ -234,7 +239,7 @@ class Arm:
         return origins, origins @ cross, origins @ cross @ cross
 
     @cached_property
-    def tip(self) -> NDArray[np.float64]:
+    def tip(self) -> Array:
         """Transform of the end point (of the tool, if there is one) in the last moving link, (4, 4)."""
         transform = np.eye(4)
         for pose, _ in self.fixed:

@@ -9,12 +9,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from dexrepro.arrays import Array
 from dexrepro.robots.arm import GREY, Arm, Joint, Link, Pose, Shape
 
-Array = NDArray[np.float64]
 TURNING = ("revolute", "continuous")
 
 

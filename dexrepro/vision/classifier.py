@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
+
 INPUT = 28  # side that the 24 x 24 patches are resampled to
 CLASSES = 3
 
@@ -64,7 +66,7 @@ class GraspClassifier:
             if watch is not None:
                 watch(epoch + 1, right / len(inputs))
 
-    def probabilities(self, patches: NDArray[np.float32]) -> NDArray[np.float64]:
+    def probabilities(self, patches: NDArray[np.float32]) -> Array:
         """Probability of each class, shape (n, 3)."""
         torch = self._torch
         if not len(patches):

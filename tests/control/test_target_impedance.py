@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from dexrepro.control.target_impedance import TargetImpedance
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 ARM = PlanarChain((0.5, 0.3, 0.1), (1.5, 0.9, 0.2))
 

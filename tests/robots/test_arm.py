@@ -8,7 +8,7 @@ import pytest
 from dexrepro.physics.loading import LoadingError, connect, load_arm
 from dexrepro.physics.plant import bullet
 from dexrepro.robots.arm import Arm, InvalidInertia, Joint, Link, Pose, Shape, Tool
-from dexrepro.robots.baxter import baxter, data
+from dexrepro.robots.baxter import _data, baxter
 from dexrepro.robots.planar import planar
 
 
@@ -72,7 +72,7 @@ def test_baxter_carries_the_makers_limits_and_masses():
     arm = baxter("left")
     np.testing.assert_array_equal(arm.effort, [50, 100, 50, 50, 15, 15, 15])
     total = sum(link.mass for link in arm.links) + arm.bodies[0][1].mass
-    assert total == pytest.approx(sum(row["mass"] for row in data()["links"]))
+    assert total == pytest.approx(sum(row["mass"] for row in _data()["links"]))
 
 
 def test_only_arms_in_a_horizontal_plane_are_planar():

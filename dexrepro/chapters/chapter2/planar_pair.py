@@ -13,8 +13,7 @@ from dexrepro.experiment import Config, Recording
 from dexrepro.physics.elements import Elastic, Ends
 from dexrepro.physics.plant import Controller
 from dexrepro.physics.world import World
-from dexrepro.robots.planar import planar
-from dexrepro.robots.planar_chain import Links, PlanarChain
+from dexrepro.robots.planar import Links, PlanarChain, planar
 
 
 def scene(config: Config) -> World:

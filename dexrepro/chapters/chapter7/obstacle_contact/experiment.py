@@ -12,6 +12,7 @@ from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.reaching import Obstacle
 from dexrepro.physics.elements import Push
+from dexrepro.robots.pen_arm import pen_arm_tip
 
 RATE = 200.0
 
@@ -42,7 +43,7 @@ def predicted_deviation(recording: Recording, config: Config) -> float:
     """Deviation [mm] J (K k)^-1 J^T F of the last posture under the push without estimation, friction left out."""
     angles, nudge = recording["reference"][-1], 1e-6
     steps = nudge * np.eye(3)
-    jacobian = (desk.forward(angles + steps) - desk.forward(angles - steps)).T / (2 * nudge)
+    jacobian = (pen_arm_tip(angles + steps) - pen_arm_tip(angles - steps)).T / (2 * nudge)
     impedance = config.law(_NoModel()).impedance(recording["stiffness"][-1], np.zeros(3))
     compliance = jacobian @ np.diag(1 / (impedance * config.error_slope)) @ jacobian.T
     return float(1e3 * np.linalg.norm(compliance @ (0.0, config.push_force, 0.0)))

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from dexrepro.chapters.chapter8.task import TaskController, beyond, circle, joint_angles, two_link
+from dexrepro.chapters.chapter8.task import TaskController, beyond, circle, two_link
 from dexrepro.control.barrier_tracking import BarrierTracking, barrier_energy
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.networks import AdaptiveNetwork, GrowingGaussians
 from dexrepro.physics.elements import JointLoad, joint_friction
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
+from dexrepro.robots.two_link import TwoLink
 
 RATE = 100.0
 
@@ -22,7 +23,8 @@ RATE = 100.0
 def scene(config: Config) -> World:
     """The arm in a vertical plane (gravity along -y), its end point at the start."""
     world = World(step=config.step, gravity=(0.0, -config.gravity, 0.0), perturbation=config.perturbation)
-    world.add_arm("arm", two_link(config.arm), joint_angles(config.arm, config.start))
+    start = TwoLink(config.arm.lengths).inverse(config.start, config.arm.elbow)
+    world.add_arm("arm", two_link(config.arm), start)
     friction = config.friction
     if friction.coulomb or friction.viscous:
         world.add(JointLoad("arm", joint_friction(friction.viscous, friction.coulomb, friction.width)))
