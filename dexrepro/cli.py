@@ -377,7 +377,7 @@ def new_command(options: argparse.Namespace) -> int:
 
 
 def render_command(options: argparse.Namespace) -> int:
-    """``dexrepro render [FOLDER | chapter=N] [only=EXPERIMENT] [case=NAME] [format=gif|mp4]``.
+    """``dexrepro render [FOLDER | chapter=N] [only=EXPERIMENT] [case=NAME] [format=gif|mp4] [allow=MODULE,...]``.
 
     Without a folder or an experiment: the film of every experiment that declares one and has a result, where it is
     missing or older than its recording.
@@ -388,7 +388,8 @@ def render_command(options: argparse.Namespace) -> int:
 
     folders = [Path(text) for text in options.selection if "=" not in text]
     words = [text for text in options.selection if "=" in text]
-    numbers, only, results, _, values = selected(words, ("case", "format"))
+    numbers, only, results, _, values = selected(words, ("case", "format", "allow"))
+    allow = [name for name in values.get("allow", "").strip("[]").split(",") if name]
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
         raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
@@ -406,7 +407,7 @@ def render_command(options: argparse.Namespace) -> int:
     if not folders and not films:
         raise InputError(f"no result in {results} has a film; run first: dexrepro run")
     for folder in folders:
-        out.print(str(animation.render(folder, values.get("case"), kind)), markup=False)
+        out.print(str(animation.render(folder, values.get("case"), kind, allow)), markup=False)
     if not folders:
         out.print(f"nothing to render: {len(films)} films are up to date")
     return OK
