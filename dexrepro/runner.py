@@ -8,6 +8,7 @@ import platform
 import shutil
 import subprocess
 import time
+import warnings
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -63,13 +64,17 @@ class Outcome:
 
 @dataclass(frozen=True)
 class CaseEntry:
-    """What run.json says of a case: how it ended, steps, simulated time [s], wall time [s] and their quotient."""
+    """What run.json says of a case: how it ended, steps, simulated time [s], wall time [s] and their quotient.
+
+    warnings: what the user's files made doubtful, above all.
+    """
 
     status: str
     steps: int
     simulated: float
     wall: float
     real_time_factor: float | None
+    warnings: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -108,12 +113,14 @@ def execute(job: Job) -> CaseEntry:
     World.live = job.gui
     experiment = chapters.load(job.chapter).experiment(job.experiment)
     import_anew(job.config)
-    config = live(job.config)
-    if job.own != own_digest(job.config) and "__main__." not in str(job.config):
-        raise InputError("a file that it uses was edited meanwhile; the same command runs it again")
-    recording, metrics, wall = run_case(experiment, config, job.seed)
+    with warnings.catch_warnings(record=True) as caught:
+        config = live(job.config)
+        if job.own != own_digest(job.config) and "__main__." not in str(job.config):
+            raise InputError("a file that it uses was edited meanwhile; the same command runs it again")
+        recording, metrics, wall = run_case(experiment, config, job.seed)
     factor = recording.simulated / wall if recording.simulated else None
-    entry = CaseEntry(recording.status, recording.steps, recording.simulated, wall, factor)
+    doubts = sorted({" ".join(str(warning.message).split()) for warning in caught})
+    entry = CaseEntry(recording.status, recording.steps, recording.simulated, wall, factor, doubts)
     with whole_folder(Path(job.folder)) as folder:
         save_recording(recording, folder / "series", job.case, experiment.rate)
         files = {path.name: [path.stat().st_size, _checksum(path)] for path in sorted((folder / "series").iterdir())}
@@ -395,5 +402,6 @@ def summary_rows(outcome: Outcome) -> list[dict[str, Any]]:
         for claim in claims:
             verdicts[claim["verdict"]] = verdicts.get(claim["verdict"], 0) + 1
         timing = {key: run[key] for key in ("wall", "simulated", "real_time_factor")}
-        rows.append({"experiment": name, "folder": str(folder), "claims": verdicts, **timing})
+        doubts = sorted({text for entry in run["cases"].values() for text in entry.get("warnings", ())})
+        rows.append({"experiment": name, "folder": str(folder), "claims": verdicts, "warnings": doubts, **timing})
     return rows

@@ -131,6 +131,6 @@ def test_jobs_of_a_study_share_its_samples(shell: Shell, toy: Path) -> None:
     done = shell(f"{study} jobs=2 hydra/launcher=submitit_local")
     assert done.returncode == 0, done.stderr
     assert "C90.01: holds in 6 of 6" in done.stdout
-    lines = (toy / "results/baselines/study/decay.jsonl").read_text().splitlines()
+    lines = (toy / "results/studies/decay.jsonl").read_text().splitlines()
     assert sorted(json.loads(line)["index"] for line in lines) == list(range(6))
     assert "jobs = x is not allowed" in shell(f"{study} jobs=x").stderr

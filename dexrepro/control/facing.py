@@ -6,9 +6,8 @@ Quaternions are unit, scalar first, of shape (..., 4); rotation matrices of shap
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array
 
 
 def facing(quaternion: Array) -> Array:

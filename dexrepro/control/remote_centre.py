@@ -7,11 +7,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.robots.rotations import rotation_matrix, tilt
-
-Array = NDArray[np.float64]
 
 
 def closest_point(centre: Array, corners: Sequence[Array]) -> tuple[int, Array]:

@@ -135,7 +135,7 @@ class Hand:
         return samples, np.repeat(self.centre[None], samples, 0), np.full(samples, self.roll)
 
     def wait(self, duration: float) -> None:
-        """Hold still, but for the tremor."""
+        """Hold still for a duration [s], but for the tremor."""
         _, path, roll = self._hold(duration)
         self._advance(path, roll)
 

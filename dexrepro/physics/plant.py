@@ -6,6 +6,7 @@ world frame, and ``push(fx, fy, fz)`` [N]. Plain floats: at 1 kHz small arrays c
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable, Sequence
 from operator import add
 from typing import NamedTuple
@@ -15,7 +16,7 @@ import pybullet as bullet
 from scipy.spatial.transform import Rotation
 
 from dexrepro.arrays import Array
-from dexrepro.physics.loading import load_arm
+from dexrepro.physics.loading import connect, disconnect, lighter, load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import forward, jacobian
@@ -141,10 +142,15 @@ class SimulatedArm(Point):
         position: Array,
         sensor: Sensor,
         rng: np.random.Generator | None,
+        meshes: bool = False,
     ) -> None:
         super().__init__((0.0, 0.0, 0.0))
         self.client, self.name, self.arm, self.dof = client, name, arm, arm.dof
-        self.body = load_arm(client, arm)
+        self.body = load_arm(client, arm, meshes)
+        self._dynamics = client, self.body, lighter(arm)
+        if self._dynamics[2] < 1:
+            self._dynamics = _twin(client, arm)
+            weakref.finalize(self, disconnect, self._dynamics[0])
         self.links = [link.name for link in arm.links] + [link.name for _, link in arm.bodies]
         self.feels_contact = False
         self._indices = list(range(arm.dof))
@@ -229,7 +235,7 @@ class SimulatedArm(Point):
         self.load = [a + float(b) for a, b in zip(self.load, torque, strict=True)]
 
     def observe(self, time: float, sample: bool) -> Sense:
-        """Refresh what the controller sees; imperfect sensors deliver a new value only at control instants."""
+        """What the controller sees at a time [s]; imperfect sensors have news at control instants (``sample``)."""
         sense = self.sense
         sense.time = time
         if self.joint_channel is None:
@@ -278,12 +284,13 @@ class SimulatedArm(Point):
         From M dq+ = M dq + h (torque + load - bias - D dq+) follows the acceleration a of (M + h D) a = torque + load
         - bias - D dq, and the torque to apply is torque - D (dq + h a). D is a vector (diagonal) or a matrix.
         """
-        body, client = self.body, self.client
+        client, body, factor = self._dynamics
         damping = np.asarray(damping, dtype=float)
         multiply = np.multiply if damping.ndim == 1 else np.matmul
         rate = np.array(self.dq)
-        mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client))
+        mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client)) / factor
         bias = np.array(bullet.calculateInverseDynamics(body, self.q, self.dq, self._zeros, physicsClientId=client))
+        bias /= factor
         rest = torque + self.load - bias - multiply(damping, rate)
         if self._planar is None and (self.fx or self.fy or self.fz):
             linear, _ = bullet.calculateJacobian(
@@ -365,3 +372,11 @@ class EndPoint:
         self.rotation = axes.T @ local[:3, :3]
         self.from_com: tuple[float, ...] = tuple((axes.T @ (local[:3, 3] - info[3])).tolist())
         self.for_jacobian: tuple[float, ...] = tuple((axes.T @ local[:3, 3]).tolist())
+
+
+def _twin(client: int, arm: Arm) -> tuple[int, int, float]:
+    """A client of its own, under the same gravity, with an arm light enough for inverse dynamics, and its factor."""
+    parameters, factor = bullet.getPhysicsEngineParameters(physicsClientId=client), lighter(arm)
+    twin = connect()
+    bullet.setGravity(*(parameters[f"gravityAcceleration{axis}"] for axis in "XYZ"), physicsClientId=twin)
+    return twin, load_arm(twin, arm.scaled(factor)), factor

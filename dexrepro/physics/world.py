@@ -45,10 +45,10 @@ class World:
 
     step: physics step [s]; gravity: (3,) [m/s^2]; perturbation: added to every initial joint angle [rad];
     iterations: of the contact solver. The world frame has z up; positions in m, forces in N. Setting ``World.live``
-    makes every world open a window and run in real time.
+    makes every world open a window and run in real time; ``World.meshes`` shows arms as their makers drew them.
     """
 
-    live = False
+    live = meshes = False
 
     def __init__(
         self,
@@ -97,7 +97,7 @@ class World:
         """
         self._check_new(name)
         start = np.asarray(position, dtype=float) + self.perturbation
-        plant = SimulatedArm(self.client, name, arm, start, sensor, rng)
+        plant = SimulatedArm(self.client, name, arm, start, sensor, rng, World.meshes or self.gui)
         plant.feels_contact = contacts
         if not contacts:
             self._untouchable(plant.body)
@@ -216,7 +216,7 @@ class World:
         return {name: body for name, body in self.bodies.items() if body.mass > 0}
 
     def contacts(self, name: str) -> list[Touch]:
-        """Points where a named body touches anything, as of the last step."""
+        """Points [m] and forces [N] where a named body touches anything, as of the last step."""
         return touches(self.client, self._body(name))
 
     def contact_force(self, first: str, second: str) -> float:

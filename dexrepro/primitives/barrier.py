@@ -120,7 +120,7 @@ def case_two_value(z1: Array, lower: float, upper: float) -> Array:
 def closed_loop_rates(
     z1: Array, z2: Array, constraint: Constraint, gains: Gains, coupling: float, pull: Array | None = None
 ) -> tuple[Array, Array]:
-    """dz1/dt and dz2/dt under the consistent law; ``coupling`` is g1, ``pull`` replaces the case's W."""
+    """dz1/dt and dz2/dt, (..., d), under the consistent law; ``coupling`` is g1, ``pull`` replaces the case's W."""
     w = constraint.pull(z1) if pull is None else pull
     rate1 = gains.position / gains.velocity * (w + coupling * z2)
     return rate1, -gains.velocity * gain(z1, constraint, gains, coupling) * z2

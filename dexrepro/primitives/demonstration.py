@@ -62,7 +62,7 @@ class Demonstration:
         return np.ptp(self.position, axis=0)
 
     def with_rest(self, fraction: float) -> Demonstration:
-        """The same, held at its goal for ``fraction`` of its duration afterwards."""
+        """The same, held at its goal for ``fraction`` of its duration [s] afterwards."""
         count = round(fraction * (len(self.time) - 1))
         later = self.time[-1] + (self.time[1] - self.time[0]) * np.arange(1, count + 1)
         still = np.zeros((count, self.position.shape[1]))

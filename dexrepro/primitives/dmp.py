@@ -13,7 +13,7 @@ from dexrepro.arrays import Array, Mask
 from .demonstration import Demonstration
 from .kernels import FeatureMap, GaussianKernels, TruncatedKernels, phase
 from .regression import least_squares, locally_weighted, locally_weighted_affine
-from .spring_damper import SpringDamper
+from .transformation import SpringDamper
 
 
 @dataclass(frozen=True)

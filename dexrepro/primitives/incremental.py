@@ -67,7 +67,7 @@ class ExtendedKernels:
         return cls(kernels, weights, biases, kernels if base is None else base)
 
     def first(self, count: int) -> ExtendedKernels:
-        """The same with the first ``count`` random features alone."""
+        """The same with the first ``count`` of its m random features alone."""
         return replace(self, input_weights=self.input_weights[:, :count], biases=self.biases[:count])
 
     @property
@@ -81,7 +81,7 @@ class ExtendedKernels:
         return self.base.count + self.kernels.count + self.added
 
     def blocks(self, phases: Array) -> Blocks:
-        """Psi, 1/Gamma and Upsilon; Gamma itself would overflow where every kernel underflows."""
+        """Psi (N, n), 1/Gamma (N, 1) and Upsilon (N, m); Gamma itself would overflow where every kernel underflows."""
         activations = self.kernels.activations(phases)
         eta = expit(activations @ self.input_weights + self.biases)
         old, new = activations.sum(axis=1, keepdims=True), eta.sum(axis=1, keepdims=True)

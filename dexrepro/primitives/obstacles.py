@@ -19,7 +19,7 @@ class Polygon:
 
     @classmethod
     def rectangle(cls, x: ArrayLike, y: ArrayLike) -> Polygon:
-        """Axis-aligned rectangle over the intervals x and y."""
+        """Axis-aligned rectangle over the intervals x and y, (low, high) each, in the unit of the path."""
         (left, right), (bottom, top) = np.asarray(x, float), np.asarray(y, float)
         return cls(np.array([[left, bottom], [right, bottom], [right, top], [left, top]]))
 

@@ -16,6 +16,7 @@ from dexrepro.case import live, refuse_foreign, targets
 from dexrepro.config import InputError, compose_chapter, nearest
 from dexrepro.experiment import Config, Experiment, Film, Recording
 from dexrepro.physics import rendering
+from dexrepro.physics.world import World
 from dexrepro.recordings import load_recording
 from dexrepro.report import style
 from dexrepro.report.damage import check_result
@@ -95,6 +96,7 @@ def _frames(experiment: Experiment, config: Config, recording: Recording) -> Ite
     film = experiment.film
     camera = film.camera if film else rendering.Camera()
     font = ImageFont.load_default(15)
+    World.meshes = True
     with experiment.simulation.scene(config) as world:
         if experiment.function("stage"):
             recording = experiment.simulation.stage(world, recording, config)

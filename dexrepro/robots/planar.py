@@ -12,12 +12,11 @@ from typing import Generic, Protocol, TypeVar, cast, overload
 
 import numpy as np
 
-from dexrepro.arrays import Array, Real
+from dexrepro.arrays import Array, Number, Real
 from dexrepro.robots.arm import Arm, Colour, Joint, Link, Pose, Shape, Tool
 from dexrepro.robots.kinematics import forward
 
 BLUE: Colour = (0.25, 0.45, 0.75, 1.0)
-Number = TypeVar("Number", float, Array)  # of one arm, or one of each arm of a batch
 Links = tuple[Number, Number, Number, Number, Number, Number]
 Known = Links[Number] | None  # where ``links(q)`` is at hand
 Floats = Sequence[float]

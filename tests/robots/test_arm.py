@@ -31,8 +31,8 @@ def test_engine_holds_the_inertias_of_the_description():
 
 def test_what_the_importer_complains_about_is_an_error():
     class Broken(Arm):
-        def urdf(self):
-            return super().urdf().replace("<inertial>", "<ignored>").replace("</inertial>", "</ignored>")
+        def urdf(self, meshes=False):
+            return super().urdf(meshes).replace("<inertial>", "<ignored>").replace("</inertial>", "</ignored>")
 
     arm = planar([0.5], [1.0])
     broken = Broken(arm.name, arm.joints, arm.links, end=arm.end)
