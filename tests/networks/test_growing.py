@@ -33,8 +33,8 @@ def test_distance_is_measured_from_the_mean_of_the_nearest_centres():
 
 
 def test_growth_is_considered_at_every_interval_and_only_when_asked():
-    basis = GrowingGaussians(1, width=1.0, threshold=0.5, interval=3)
-    assert walk(basis, [[0.0], [1.0], [2.0], [3.0], [4.0]]) == [1, 1, 1, 2, 2]
+    basis = GrowingGaussians(1, width=1.0, threshold=0.5, interval=4)
+    assert walk(basis, [[0.0], [1.0], [2.0], [3.0], [4.0], [5.0]]) == [1, 1, 1, 1, 2, 2]
     basis([50.0])
     assert basis.nodes == 2
 
