@@ -35,8 +35,8 @@ def test_distance_is_measured_from_the_mean_of_the_nearest_centres():
 def test_the_nearest_centres_are_found_among_many():
     rng = np.random.default_rng(0)
     for _ in range(10):
-        centres, z = rng.normal(size=(2000, 2)), rng.normal(size=2)
-        basis = GrowingGaussians(2, width=1.0, threshold=0.0, neighbours=3, placement=0.0, max_nodes=2001)
+        centres, z = rng.normal(size=(200, 2)), rng.normal(size=2)
+        basis = GrowingGaussians(2, width=1.0, threshold=0.0, neighbours=3, placement=0.0)
         basis.reset(centres)
         basis(z, grow=True)
         nearest = np.argsort(np.linalg.norm(centres - z, axis=1))[:3]
