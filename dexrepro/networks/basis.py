@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,12 +16,24 @@ Array = NDArray[np.float64]
 class Basis(ABC):
     """A feature vector G(z) of an input z.
 
-    dimension: length of the input; capacity: largest number of features there can ever be.
+    dimension: length of the input; capacity: largest number of features there can ever be; grows: whether nodes are
+    added; centres: of the present nodes, (nodes, dimension); features_per_node: how many features each gives.
     The array that a call returns is a buffer, overwritten by the next call.
     """
 
     dimension: int
     capacity: int
+    grows: ClassVar[bool] = False
+    features_per_node = 1
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes there are now."""
+        return self.capacity
+
+    def reset(self, centres: ArrayLike | None = None) -> None:
+        """Start again from ``centres`` (n, dimension) or from none; a basis that does not grow stays as it is."""
+        return
 
     @abstractmethod
     def __call__(self, z: ArrayLike, grow: bool = False) -> Array:

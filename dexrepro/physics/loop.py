@@ -187,9 +187,9 @@ class _Scene:
                 answer = self._commands[arm.name]
                 if callable(answer):
                     answer = answer(arm.observe(now, False))
-                elif type(answer) is not tuple:
+                elif not isinstance(answer, tuple):
                     continue
-            if type(answer) is tuple:
+            if isinstance(answer, tuple):
                 arm.command(answer[0], answer[1], self._step)
             else:
                 arm.command(answer, None, self._step)
