@@ -7,16 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dexrepro.chapters.chapter7 import (
-    desk,
-    fuzzy_generalisation,
-    impedance_stability,
-    obstacle_contact,
-    reactive_learning,
-    skills,
-    style_separation,
-    unseen_conditions,
-)
+from dexrepro.chapters.chapter7 import desk, skills
+from dexrepro.chapters.chapter7.fuzzy_generalisation import experiment as fuzzy_generalisation
+from dexrepro.chapters.chapter7.impedance_stability import experiment as impedance_stability
+from dexrepro.chapters.chapter7.obstacle_contact import experiment as obstacle_contact
+from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
+from dexrepro.chapters.chapter7.style_separation import experiment as style_separation
+from dexrepro.chapters.chapter7.unseen_conditions import experiment as unseen_conditions
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
 from dexrepro.runner import live

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from dexrepro import config
-from dexrepro.chapters.chapter3 import grasp_through_opening as joined
 from dexrepro.chapters.chapter3 import reach
+from dexrepro.chapters.chapter3.grasp_through_opening import experiment as joined
 from dexrepro.runner import live
 from dexrepro.vision.tabletop import Item
 
