@@ -12,7 +12,9 @@ import numpy as np
 
 from dexrepro.chapters.chapter1.followers import PlanarFollower
 from dexrepro.chapters.measures import rms
+from dexrepro.control.contract import report
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
@@ -47,8 +49,7 @@ def scene(config: Config) -> World:
 
 
 def simulate(config: Config, rng: Any) -> Recording:
-    dt, law = config.control_period, config.law
-    law.reset(0.0)
+    dt, law = config.control_period, HoldingDrive(config.law)
     with scene(config) as world:
         followers = {}
         for name, plant in world.arms.items():
@@ -68,11 +69,11 @@ def simulate(config: Config, rng: Any) -> Recording:
         def follow(sense: Any) -> Any:
             own = followers["follower"]
             position = own.chain.forward(sense.position.tolist())[0] - x1
-            return own(sense, x1 + float(law(position, float(sense.force[0]))), height)
+            return own(sense, x1 + float(law(sense.time, position, float(sense.force[0]))), height)
 
         probes = {"reference": lambda: followers["follower"].last[0] - x1}
-        if hasattr(law, "weights"):
-            probes |= {"weights": lambda: law.weights, "estimate": lambda: float(law.estimate)}
+        if {"weights", "estimate"} <= report(config.law).keys():
+            probes |= {name: lambda name=name: report(config.law)[name] for name in ("weights", "estimate")}
         recording = world.run(
             config.duration,
             controllers={"leader": lead, "follower": follow},
