@@ -14,7 +14,8 @@ Adapters that drive an arm of a World with a law stand in :mod:`dexrepro.physics
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+import math
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from typing import Any, ClassVar, Generic, Literal, NamedTuple, Protocol, TypeVar
 
@@ -52,7 +53,7 @@ class Command(NamedTuple):
     every physics step (large velocity gains on light links are unstable at 1 kHz otherwise). force: (d,) [N].
     """
 
-    torque: Array | Sequence[float] | None = None
+    torque: Array = EMPTY
     damping: Array | None = None
     force: Array | None = None
 
@@ -173,6 +174,11 @@ def report(law: Any) -> Mapping[str, Any]:
     diagnostics = getattr(law, "diagnostics", None)
     found: Mapping[str, Any] = {} if diagnostics is None else diagnostics()
     return found
+
+
+def channel(law: Any, name: str) -> Callable[[], Any]:
+    """A probe for :meth:`World.run`: one of the law's diagnostics, nan where it has no such."""
+    return lambda: report(law).get(name, math.nan)
 
 
 def _name(kind: Any) -> str:

@@ -23,6 +23,7 @@ class NonImpedanceReference:
     """
 
     kind: ClassVar[Kind] = "holding"
+    needs = ("estimation",)
 
     def __init__(
         self,

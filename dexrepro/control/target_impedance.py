@@ -57,4 +57,5 @@ class TargetImpedance:
         determinant = xx * yy - xy * xy
         u, v = (yy * ax - xy * ay) / determinant, (xx * ay - xy * ax) / determinant
         rates = (x1 * u + y1 * v - decay * dq[0], x2 * u + y2 * v - decay * dq[1], x3 * u + y3 * v - decay * dq[2])
-        return Command([t - c for t, c in zip(model.torque(q, dq, rates), model.tip_torque(q, force))])
+        torque: Any = [t - c for t, c in zip(model.torque(q, dq, rates), model.tip_torque(q, force))]
+        return Command(torque)

@@ -115,10 +115,9 @@ class Posture:
         wanted = self.stiffness * (self.start - q) - self.damping * dq
         coupling = jacobian @ np.linalg.solve(mass, jacobian.T)
         force = -np.linalg.solve(coupling, jacobian @ wanted)
-        if command.force is not None:
-            force = command.force + force
-        torque = jacobian.T @ force + mass @ wanted
-        return Command(torque if command.torque is None else command.torque + torque, command.damping)
+        if command.force is None:
+            return Command(command.torque + (jacobian.T @ force + mass @ wanted), command.damping)
+        return Command(jacobian.T @ (command.force + force) + mass @ wanted, command.damping)
 
 
 class HoldingDrive:

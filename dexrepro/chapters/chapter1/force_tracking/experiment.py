@@ -12,7 +12,7 @@ import numpy as np
 
 from dexrepro.chapters.chapter1.followers import PlanarFollower
 from dexrepro.chapters.measures import rms
-from dexrepro.control.contract import report
+from dexrepro.control.contract import channel, report
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
@@ -73,7 +73,7 @@ def simulate(config: Config, rng: Any) -> Recording:
 
         probes = {"reference": lambda: followers["follower"].last[0] - x1}
         if {"weights", "estimate"} <= report(config.law).keys():
-            probes |= {name: lambda name=name: report(config.law)[name] for name in ("weights", "estimate")}
+            probes |= {name: channel(config.law, name) for name in ("weights", "estimate")}
         recording = world.run(
             config.duration,
             controllers={"leader": lead, "follower": follow},

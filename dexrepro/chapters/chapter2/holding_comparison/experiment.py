@@ -20,7 +20,7 @@ scene = planar_pair.scene
 
 def simulate(config: Config, rng: Any) -> Recording:
     with scene(config) as world:
-        return planar_pair.run(world, config, config.law or config.laws[config.controller])
+        return planar_pair.run(world, config, config.laws[config.controller] if config.law is None else config.law)
 
 
 def measure(recording: Recording, config: Config) -> Metrics:

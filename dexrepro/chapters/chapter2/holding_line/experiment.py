@@ -11,6 +11,7 @@ import numpy as np
 from dexrepro.chapters.chapter2 import planar_pair
 from dexrepro.chapters.chapter2.measures import force_error, mean
 from dexrepro.chapters.measures import rms
+from dexrepro.control.contract import build
 from dexrepro.control.holding_reference import KnownMovement
 from dexrepro.experiment import Config, Metrics, Recording
 
@@ -26,7 +27,7 @@ def simulate(config: Config, rng: Any) -> Recording:
         movement = KnownMovement(
             movement=lambda: (config.rest_length + partner.x, partner.vx), stiffness=config.stiffness, dt=config.step
         )
-        return planar_pair.run(world, config, config.law(estimation=movement))
+        return planar_pair.run(world, config, build(config.law, estimation=movement))
 
 
 def measure(recording: Recording, config: Config) -> Metrics:

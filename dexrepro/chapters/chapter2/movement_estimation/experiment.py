@@ -11,6 +11,7 @@ from dexrepro.chapters.chapter2 import planar_pair
 from dexrepro.chapters.chapter2.measures import force_error, last_outside, mean
 from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.physics.drive import HoldingDrive
 
 RATE = 50.0
 SETTLED = 20.0  # s, from here on a run counts as settled
@@ -55,9 +56,10 @@ def _slope(true: Any, estimated: Any) -> float | None:
 def _replay(recording: Recording, config: Config) -> float:
     """Largest difference [m] of the reference when the law alone is fed the arm's own position and force."""
     start = recording.between(0, 10)
-    law, positions = config.law, recording["follower.tip"][start, 0].tolist()
-    law.reset(positions[0])
-    replayed = [law(x, f) for x, f in zip(positions, recording["follower.force"][start, 0].tolist())]
+    law, times = HoldingDrive(config.law), recording.time[start].tolist()
+    positions, forces = (recording[f"follower.{name}"][start, 0].tolist() for name in ("tip", "force"))
+    law.reset(times[0], positions[0])
+    replayed = [law(*sample) for sample in zip(times, positions, forces)]
     return float(np.abs(np.array(replayed) - recording["reference"][start, 0]).max())
 
 
