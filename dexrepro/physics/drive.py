@@ -19,11 +19,12 @@ Array = NDArray[np.float64]
 class JointDrive:
     """A joint law along a joint path; a controller for :meth:`World.run`.
 
-    contact: external joint torque (n,) [N m] as the arm estimates it from what it senses; without it the law is told 0.
-    ``desired`` is the motion of the last call.
+    path: where the joints should be over time, or None where :meth:`command` is told at every call. contact: external
+    joint torque (n,) [N m] as the arm estimates it from what it senses; without it the law is told 0. ``desired`` is
+    the motion of the last call.
     """
 
-    def __init__(self, law: Law, path: Path, contact: Callable[[Sense], Array] | None = None) -> None:
+    def __init__(self, law: Law, path: Path | None = None, contact: Callable[[Sense], Array] | None = None) -> None:
         self.law: Law = check(law, "joint")
         self.path, self.contact = path, contact
         self.desired: Motion[Array] | None = None
@@ -31,11 +32,15 @@ class JointDrive:
     def __call__(self, sense: Sense) -> Command:
         q = sense.position
         force = np.zeros(len(q)) if self.contact is None else self.contact(sense)
-        measured = Measured(sense.time, q, sense.velocity, force)
+        assert self.path is not None
+        return self.command(Measured(sense.time, q, sense.velocity, force), self.path(sense.time))
+
+    def command(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
+        """What the law commands; it is reset before its first call."""
         if self.desired is None:
             self.law.reset(measured)
-        self.desired = self.path(sense.time)
-        return self.law(measured, self.desired)
+        self.desired = desired
+        return self.law(measured, desired)
 
 
 class Kinematics(Protocol):
