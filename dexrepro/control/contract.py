@@ -145,9 +145,9 @@ def build(law: Any, **offers: Any) -> Any:
     if not isinstance(law, partial):
         return law
     needs = getattr(law.func, "needs", ())
-    if missing := [name for name in needs if name not in offers]:
+    if missing := [name for name in needs if name not in offers and name not in law.keywords]:
         raise ValueError(f"law {_name(law.func)} needs {missing[0]}; this comparison offers {', '.join(offers)}")
-    return law(**{name: offers[name] for name in needs})
+    return law(**{name: offers[name] for name in needs if name not in law.keywords})
 
 
 def printed_forms(printed: Collection[str], known: Collection[str]) -> frozenset[str]:
@@ -174,6 +174,11 @@ def report(law: Any) -> Mapping[str, Any]:
     diagnostics = getattr(law, "diagnostics", None)
     found: Mapping[str, Any] = {} if diagnostics is None else diagnostics()
     return found
+
+
+def memory(law: Any) -> Any:
+    """The network of a law, built or still partial; None where it has none."""
+    return law.keywords.get("network") if isinstance(law, partial) else getattr(law, "network", None)
 
 
 def channel(law: Any, name: str) -> Callable[[], Any]:

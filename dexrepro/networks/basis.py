@@ -35,6 +35,11 @@ class Basis(ABC):
         """Start again from ``centres`` (n, dimension) or from none; a basis that does not grow stays as it is."""
         return
 
+    @property
+    @abstractmethod
+    def centres(self) -> Array:
+        """Centres of the present nodes, (nodes, dimension)."""
+
     @abstractmethod
     def __call__(self, z: ArrayLike, grow: bool = False) -> Array:
         """Features at ``z`` (dimension,), shape (n,). With ``grow``, a growing basis may add a node first."""
@@ -47,14 +52,19 @@ class Gaussians(Basis):
     """
 
     def __init__(self, centres: ArrayLike, width: float, normalised: bool = False) -> None:
-        self.centres = np.array(centres, dtype=float)
+        self._centres = np.array(centres, dtype=float)
         self.width, self.normalised = float(width), normalised
-        self.capacity, self.dimension = self.centres.shape
-        self._difference = np.empty_like(self.centres)
+        self.capacity, self.dimension = self._centres.shape
+        self._difference = np.empty_like(self._centres)
         self._features = np.empty(self.capacity)
 
+    @property
+    def centres(self) -> Array:
+        """Centres, (nodes, dimension)."""
+        return self._centres
+
     def __call__(self, z: ArrayLike, grow: bool = False) -> Array:
-        squared_distances(self.centres, z, self._difference, self._features)
+        squared_distances(self._centres, z, self._difference, self._features)
         self._features *= -1.0 / self.width**2
         np.exp(self._features, out=self._features)
         return _normalise(self._features) if self.normalised else self._features
