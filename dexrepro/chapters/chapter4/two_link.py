@@ -159,9 +159,8 @@ def simulate(config: Config) -> Recording:
         if part.status != "finished":
             status = part.status
             break
-        if pilot.network is not None:
-            if law.learning and number < ELLIPSE:
-                pilot.network.reset(pilot.mean_weights)
+        if pilot.network is not None and law.learning and number < ELLIPSE:
+            pilot.network.reset(pilot.mean_weights)
     recording = _joined(parts, config)
     recording.status = status
     _add_weights(recording, parts, weights, law, config)
