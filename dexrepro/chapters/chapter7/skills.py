@@ -136,7 +136,7 @@ class Primitive:
         self.phases = phase(self.time, self.duration, config.dmp.phase_decay)
         self.kernels = GaussianKernels.spaced(kernels, config.dmp.phase_decay, config.dmp.overlap)
         self.system = SpringDamper(config.dmp.stiffness, config.dmp.damping)
-        self.damping_sign = {"corrected": 1.0, "printed": -1.0}[config.target_sign]
+        self.printed_target = config.printed_target
         self.ridge = config.dmp.ridge
 
     def target(self, paths: Array, goal: ArrayLike, cutoff: float, padding: str = "odd") -> Array:
@@ -145,7 +145,7 @@ class Primitive:
         velocity = self.duration * np.gradient(smooth, 1 / self.rate, axis=-2, edge_order=2)
         acceleration = self.duration * np.gradient(velocity, 1 / self.rate, axis=-2, edge_order=2)
         correct = self.system.forcing(smooth, velocity, acceleration, goal)
-        return correct + (self.damping_sign - 1) * self.system.damping * velocity
+        return correct - 2 * self.system.damping * velocity if self.printed_target else correct
 
     def fit(self, target: Array) -> Array:
         """Weights (n, d) of the kernels for a forcing term (N, d), Eq. (7.20)."""
