@@ -14,7 +14,6 @@ Adapters that drive an arm of a World with a law stand in :mod:`dexrepro.physics
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from typing import Any, ClassVar, Generic, Literal, NamedTuple, Protocol, TypeVar
@@ -181,9 +180,9 @@ def memory(law: Any) -> Any:
     return law.keywords.get("network") if isinstance(law, partial) else getattr(law, "network", None)
 
 
-def channel(law: Any, name: str) -> Callable[[], Any]:
-    """A probe for :meth:`World.run`: one of the law's diagnostics, nan where it has no such."""
-    return lambda: report(law).get(name, math.nan)
+def channels(law: Any, *names: str) -> dict[str, Callable[[], Any]]:
+    """Probes for :meth:`World.run`: those of the named diagnostics that the law reports, each one channel."""
+    return {name: lambda name=name: report(law)[name] for name in names if name in report(law)}  # type: ignore[misc]
 
 
 def _name(kind: Any) -> str:

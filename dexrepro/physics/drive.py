@@ -125,6 +125,23 @@ class Posture:
         return Command(jacobian.T @ (command.force + force) + mass @ wanted, command.damping)
 
 
+def limited(
+    controller: Callable[[Sense], Command], limit: Array | float = math.inf, support: NominalModel | None = None
+) -> Callable[[Sense], Command]:
+    """A controller whose torques stay within +- limit [N m].
+
+    support: a model whose gravity torque is added, what holds the arm alone, as an arm's maker does.
+    """
+
+    def command(sense: Sense) -> Command:
+        torque, damping, _ = controller(sense)
+        if support is not None:
+            torque = torque + support.gravity(sense.position)
+        return Command(np.minimum(np.maximum(torque, -limit), limit), damping)
+
+    return command
+
+
 class HoldingDrive:
     """Where a holding law wants its arm along the line of contact, [m].
 

@@ -13,7 +13,7 @@ from dexrepro.control.contract import Command, Law, build, report
 from dexrepro.control.motion import Sampled, via_points
 from dexrepro.experiment import Config, Recording
 from dexrepro.networks import AdaptiveNetwork
-from dexrepro.physics.drive import EndPointDrive
+from dexrepro.physics.drive import EndPointDrive, limited
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
@@ -77,14 +77,11 @@ class Pilot:
     """Drives the arm with a law along a reference; the torques that hold the arm alone are added, as its maker does."""
 
     def __init__(self, law: Law, model: RigidBodyModel, compensate: bool, reference: Sampled) -> None:
-        self.law, self.model, self.compensate = law, model, compensate
-        self.drive = EndPointDrive(law, reference, model)
+        self.law, self.drive = law, EndPointDrive(law, reference, model)
+        self.command = limited(self.drive, support=model if compensate else None)
 
     def __call__(self, sense: Sense) -> Command:
-        command = self.drive(sense)
-        if not self.compensate:
-            return command
-        return Command(command.torque + self.model.gravity(sense.position), command.damping)
+        return self.command(sense)
 
     def state(self) -> list[float]:
         """Error (3), usage (3), E, nodes, largest feature, for the columns of ``STATE``."""

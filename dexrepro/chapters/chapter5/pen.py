@@ -10,7 +10,7 @@ import numpy as np
 
 from dexrepro.chapters.measures import rms
 from dexrepro.control.bounded_neural import barrier
-from dexrepro.control.contract import Law, channel, report
+from dexrepro.control.contract import Law, channels
 from dexrepro.control.motion import Sampled
 from dexrepro.control.prescribed_performance import PerformanceBound
 from dexrepro.experiment import Config, Metrics, Recording
@@ -121,7 +121,7 @@ def track(config: Config, target: Sampled, law: Law, nominal: RigidBodyModel) ->
         return share * (sense.force @ nominal.jacobian(sense.position)[:3])
 
     controller = JointDrive(law, target, contact if share else None)
-    probes = {name: channel(law, name) for name in ("velocity_error",) if name in report(law)}
+    probes = channels(law, "velocity_error")
     duration = (len(position) - 1) * config.arm.step
     with world(config, position[0] - np.array(config.arm.initial_error)) as scene:
         recording = scene.run(duration, {"arm": controller}, probes=probes, on_divergence="stop")

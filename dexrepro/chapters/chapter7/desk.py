@@ -171,7 +171,7 @@ def run(config: Config, reference: Reference, world: World, **options: Any) -> R
     probes = {
         "reference": lambda: reference(world.time).position,
         "planned": lambda: reference.tip[reference.index(world.time)],
-    } | {name: contract.channel(law, name) for name in ("filtered_error",) if name in contract.report(law)}
+    } | contract.channels(law, "filtered_error")
     recording = world.run(
         (len(reference) - 1) * reference.dt,
         {"arm": JointDrive(law, reference)},

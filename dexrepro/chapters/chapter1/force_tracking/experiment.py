@@ -12,7 +12,7 @@ import numpy as np
 
 from dexrepro.chapters.chapter1.followers import PlanarFollower
 from dexrepro.chapters.measures import rms
-from dexrepro.control.contract import channel, report
+from dexrepro.control.contract import channels
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
@@ -72,8 +72,7 @@ def simulate(config: Config, rng: Any) -> Recording:
             return own(sense, x1 + float(law(sense.time, position, float(sense.force[0]))), height)
 
         probes = {"reference": lambda: followers["follower"].last[0] - x1}
-        if {"weights", "estimate"} <= report(config.law).keys():
-            probes |= {name: channel(config.law, name) for name in ("weights", "estimate")}
+        probes |= channels(config.law, "weights", "estimate")
         recording = world.run(
             config.duration,
             controllers={"leader": lead, "follower": follow},
