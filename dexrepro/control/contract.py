@@ -139,14 +139,15 @@ def coriolis(model: NominalModel, q: Array, dq: Array, vector: Array) -> Array:
 def build(law: Any, **offers: Any) -> Any:
     """The law itself, or what a ``_partial_`` configuration of it makes of the offers its class ``needs``.
 
-    Raises ValueError where the class needs what the comparison does not offer.
+    Raises ValueError where the class cannot do without what the comparison does not offer.
     """
     if not isinstance(law, partial):
         return law
-    needs = getattr(law.func, "needs", ())
-    if missing := [name for name in needs if name not in offers and name not in law.keywords]:
-        raise ValueError(f"law {_name(law.func)} needs {missing[0]}; this comparison offers {', '.join(offers)}")
-    return law(**{name: offers[name] for name in needs if name not in law.keywords})
+    taken = set(getattr(law.func, "needs", ())) & offers.keys() - law.keywords.keys()
+    try:
+        return law(**{name: offers[name] for name in taken})
+    except TypeError as error:
+        raise ValueError(f"law {_name(law.func)}: {error}; this comparison offers {', '.join(offers)}") from error
 
 
 def printed_forms(printed: Collection[str], known: Collection[str]) -> frozenset[str]:
