@@ -29,7 +29,7 @@ def simulate(config: Config, rng: Any) -> Recording:
 def measure(recording: Recording, config: Config) -> Metrics:
     time, late, early = recording.time, recording.between(SETTLED), recording.between(0, 10)
     force, desired = recording["follower.force"][:, 0], config.desired_force
-    rest, stiffness, velocity = recording["estimate"].T
+    rest, stiffness, velocity = recording.series.get("estimate", np.full((time.size, 3), np.nan)).T
     error = rest - recording["rest_position"]
     residual = error - desired * (1 / stiffness - 1 / config.stiffness)
     true_velocity = np.gradient(recording["rest_position"], time) if time.size > 1 else np.zeros(time.size)
