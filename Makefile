@@ -1,9 +1,10 @@
-# make figures: run the book, render its films and build its report.  make test: all tests.  Both set up everything they need.
-PYTHON ?= python3
+# make figures: run the book, render its films and build its report.  make test: all tests.  Both set up everything they
+# need, by a Python of their own choice; PYTHON=... chooses another.
+PYTHON ?=
 BIN := .venv/bin
 EXTRAS ?= dev
 
-.PHONY: figures test check lint bench wheel clean
+.PHONY: figures test check lint bench mutation wheel clean
 
 figures: .venv/ready
 	$(BIN)/dexrepro run
@@ -25,17 +26,21 @@ check: .venv/ready
 bench: .venv/bench
 	$(BIN)/python -m pytest tests/bench -q -s -p no:xdist -o python_files='bench_*.py'
 
+# Wrong laws that the tests have to notice: make mutation PLACES="control/holding networks" SHARE=1
+PLACES ?= control primitives networks physics
+SHARE ?= 0.1
+mutation: .venv/ready
+	$(BIN)/python tests/mutation/mutate.py $(PLACES) --share $(SHARE)
+
 wheel: .venv/ready
 	$(BIN)/python -m build
 
-.venv/ready: pyproject.toml .ci/constraints.txt
-	$(PYTHON) -c 'import sys; sys.exit("dexrepro needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
-	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --quiet --disable-pip-version-check -c .ci/constraints.txt -e '.[$(EXTRAS)]'
+.venv/ready: pyproject.toml .ci/constraints.txt .ci/environment
+	.ci/environment $(EXTRAS) $(PYTHON)
 	touch $@
 
 .venv/bench: .venv/ready
-	$(BIN)/pip install --quiet --disable-pip-version-check -c .ci/constraints.txt -e '.[$(EXTRAS),bench]'
+	.ci/environment $(EXTRAS),bench $(PYTHON)
 	touch $@
 
 clean:

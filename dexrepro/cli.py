@@ -102,6 +102,7 @@ def _parser() -> argparse.ArgumentParser:
     report.set_defaults(function=report_command)
 
     study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
+    study.add_argument("--update", action="store_true", help="renew the study that is shipped")
     study.set_defaults(function=study_command)
 
     render = commands.add_parser("render", parents=[selection], help="animate recorded runs (case=NAME format=gif|mp4)")
@@ -178,7 +179,7 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     from dexrepro.config import compose_chapter
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
-    from dexrepro.runner import Outcome, run_plans
+    from dexrepro.runner import Outcome, run_plans, summary_rows
     from dexrepro.selection import chapters_of, of_chapter, positive_workers
 
     numbers, rest = chapters_of(overrides, extra_dir)
@@ -203,6 +204,8 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     outcome.skipped = skipped
     if not quiet:
         _print_summary(outcome)
+    for text in dict.fromkeys(text for row in summary_rows(outcome) for text in row["warnings"]):
+        err.print(f"warning: {text}", markup=False)
     return outcome
 
 
@@ -412,7 +415,7 @@ def study_command(options: argparse.Namespace) -> int:
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
             try:
-                path = study.run(number, name, samples, results, workers=workers, hours=hours)
+                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update)
             except BrokenProcessPool:
                 err.print("a process of the study was killed; the same command completes what is missing", markup=False)
                 return FAILED
@@ -452,6 +455,8 @@ def _study_jobs(options: argparse.Namespace) -> int:
     selection = ",".join(json.dumps(text) for text in words)
     results = [text for text in words if text.startswith("results=")]
     status = _launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
+    if options.update and status == OK:
+        return study_command(argparse.Namespace(selection=words, update=True))
     for name in names:
         if (path := study.summary_file(name, folder)).exists():
             _print_study(name, path, folder)
@@ -462,7 +467,7 @@ def _study_job(config: Any) -> None:
     from dexrepro.sweep import JobFailed, enter_launch_folder
 
     enter_launch_folder()
-    if study_command(argparse.Namespace(selection=["workers=1", *config.selection])) != OK:
+    if study_command(argparse.Namespace(selection=["workers=1", *config.selection], update=False)) != OK:
         raise JobFailed("a process was killed; the same command completes what is missing")
 
 
@@ -471,7 +476,7 @@ def _print_study(name: str, path: Path, results: Path) -> None:
     from dexrepro.storage import read_json
 
     summary = read_json(path)
-    drawing = studies.save(summary, results / "study" / f"{name}.svg")
+    drawing = studies.save(summary, results / "studies" / f"{name}.svg")
     out.print(f"{name}: {path}, drawn in {drawing}", markup=False)
     for claim, row in summary["claims"].items():
         interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"

@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import time
 import traceback
+import warnings
 import zlib
 from collections.abc import Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -101,12 +102,13 @@ def execute(job: Job) -> dict[str, Any]:
     World.live = job.gui
     experiment = chapters.load(job.chapter).experiment(job.experiment)
     start = time.perf_counter()
-    config = live(job.config)
-    recording: Recording = experiment.simulation.simulate(
-        config, lambda purpose: generator(job.seed, job.experiment, purpose)
-    )
-    wall = time.perf_counter() - start
-    measured: Metrics = experiment.simulation.measure(recording, config)
+    with warnings.catch_warnings(record=True) as caught:
+        config = live(job.config)
+        recording: Recording = experiment.simulation.simulate(
+            config, lambda purpose: generator(job.seed, job.experiment, purpose)
+        )
+        wall = time.perf_counter() - start
+        measured: Metrics = experiment.simulation.measure(recording, config)
     entry = {
         "status": recording.status,
         "steps": recording.steps,
@@ -114,6 +116,8 @@ def execute(job: Job) -> dict[str, Any]:
         "wall": wall,
         "real_time_factor": recording.simulated / wall if recording.simulated else None,
     }
+    if caught:  # what the user's files made doubtful, above all
+        entry["warnings"] = sorted({" ".join(str(warning.message).split()) for warning in caught})
     with whole_folder(Path(job.folder)) as folder:
         save_recording(recording, folder / "series", job.case, experiment.rate)
         write_json(folder / "case.json", {"entry": entry, "metrics": measured, "config": job.config})
@@ -348,5 +352,6 @@ def summary_rows(outcome: Outcome) -> list[dict[str, Any]]:
         for claim in claims:
             verdicts[claim["verdict"]] = verdicts.get(claim["verdict"], 0) + 1
         timing = {key: run[key] for key in ("wall", "simulated", "real_time_factor")}
-        rows.append({"experiment": name, "folder": str(folder), "claims": verdicts, **timing})
+        doubts = sorted({text for entry in run["cases"].values() for text in entry.get("warnings", ())})
+        rows.append({"experiment": name, "folder": str(folder), "claims": verdicts, "warnings": doubts, **timing})
     return rows

@@ -72,7 +72,7 @@ def test_a_joint_comes_to_rest_where_it_should_be():
         "bounded_tracking.cases.mine={{hand.letter: w, law: {law}}}",
     ),
     "end_point": Template(
-        '''"""An end-point law of your own: from place and velocity of the end point, and what they should be, to force."""
+        '''"""An end-point law of your own: from place and velocity of the end point, and the desired ones, to force."""
 
 from dexrepro.control.contract import Command
 

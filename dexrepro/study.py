@@ -152,31 +152,42 @@ def run(
     *,
     workers: int | None = None,
     hours: float | None = None,
+    update: bool = False,
 ) -> Path:
-    """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path."""
-    target = summary_file(experiment, results)
-    for folder in (target.parent, _locks(results)):
+    """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path.
+
+    ``update`` renews the study that is shipped. Raises InputError where a summary of more samples, of another
+    configuration, would be replaced.
+    """
+    target = summary_file(experiment, results, update)
+    for folder in (target.parent, _folder(results)):
         folder.mkdir(parents=True, exist_ok=True)
     done = _kept(chapter, experiment, results)
     missing = [index for index in range(samples) if index not in done]
+    if (before := _size(target)) > len(done) + len(missing):
+        raise InputError(
+            f"samples = {samples} is not allowed: {target} holds {before} samples of another configuration, which "
+            f"fewer do not replace; ask for {before} or more, or for another folder with results=DIR"
+        )
     deadline = time.time() + 3600 * hours if hours else float("inf")
     with pool(workers) as submit:
         for future in as_completed([submit(contribute, chapter, experiment, i, results, deadline) for i in missing]):
             future.result()
-    with locked(_locks(results)):  # who ends last sees every sample
-        entries = _kept(chapter, experiment, results).values()
-        write_text(_lines(target), "".join(map(_line, entries)))
-        write_json(target, summary(chapter, experiment, list(entries)))
+    with locked(_folder(results)):  # who ends last sees every sample
+        entries = list(_kept(chapter, experiment, results).values())
+        if len(entries) >= _size(target):  # fewer where the hours are over
+            write_text(_lines(target), "".join(map(_line, entries)))
+            write_json(target, summary(chapter, experiment, entries))
     return target
 
 
 def contribute(chapter: str, experiment: str, index: int, results: Path, deadline: float) -> None:
     """Evaluate one sample and add its line, unless another process does or has done so, or it is too late."""
-    with claimed(_locks(results), f"{experiment}.{index}", wait=False) as mine:
+    with claimed(_folder(results), f"{experiment}.{index}", wait=False) as mine:
         if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index):
             return
         line = _line(finite(evaluate(chapter, experiment, index)))
-        with locked(_locks(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
+        with locked(_folder(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
             file.seek(max(file.tell() - 1, 0))
             cut_short = file.read(1) not in (b"", b"\n")
             file.write(b"\n" * cut_short + line.encode())
@@ -185,8 +196,8 @@ def contribute(chapter: str, experiment: str, index: int, results: Path, deadlin
 def _kept(chapter: str, experiment: str, results: Path, only: int | None = None) -> dict[int, dict[str, Any]]:
     """The samples there are, shipped or made here, of the present configuration and claims, in the order of index."""
     found, claims = {}, chapters.load(chapter).claims_of(experiment)
-    for folder in (baseline_dir(), results / "baselines"):
-        for entry in _read(_lines(folder / "study" / f"{experiment}.json")):
+    for update in (True, False):
+        for entry in _read(_lines(summary_file(experiment, results, update))):
             if only in (None, entry["index"]):
                 values, block = draw(chapter, experiment, entry["index"])
                 if entry["digest"] == _digest(claims, block, values["seed"]):
@@ -194,8 +205,12 @@ def _kept(chapter: str, experiment: str, results: Path, only: int | None = None)
     return dict(sorted(found.items()))
 
 
-def _locks(results: Path) -> Path:
-    return results / "study"
+def _folder(results: Path) -> Path:
+    return results / "studies"
+
+
+def _size(summary: Path) -> int:
+    return int(read_json(summary)["samples"]) if summary.exists() else 0
 
 
 def _lines(summary: Path) -> Path:
@@ -206,9 +221,9 @@ def _line(entry: Mapping[str, Any]) -> str:
     return json.dumps(entry) + "\n"
 
 
-def summary_file(experiment: str, results: Path) -> Path:
-    """Where the summary of a study is kept: in a checkout, beside the stored baselines."""
-    return results / "baselines" / "study" / f"{experiment}.json"
+def summary_file(experiment: str, results: Path, shipped: bool = False) -> Path:
+    """Where the summary of a study is kept: among the user's results, or beside the baselines that are shipped."""
+    return (baseline_dir() / "study" if shipped else _folder(results)) / f"{experiment}.json"
 
 
 def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -234,9 +249,9 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
 
 
 def stored(results: Path) -> list[dict[str, Any]]:
-    """Every study there is: those shipped, and in their place those made again in the user's own results."""
-    paths = [*(baseline_dir() / "study").glob("*.json"), *(results / "baselines" / "study").glob("*.json")]
-    return [read_json(path) for _, path in sorted({path.name: path for path in paths}.items())]
+    """Every study there is: of those shipped and those made here, the one of more samples; ours where equal."""
+    paths = [*(baseline_dir() / "study").glob("*.json"), *_folder(results).glob("*.json")]
+    return [read_json(path) for _, path in sorted({path.name: path for path in sorted(paths, key=_size)}.items())]
 
 
 def _most_influential(margins: Any, values: Sequence[Mapping[str, float]]) -> tuple[str | None, float | None]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from dexrepro.arrays import Array
 from dexrepro.networks import AdaptiveNetwork, Basis, GrowingGaussians, Lattice
 
 KINDS = ("broad", "broad_plain", "fuzzy", "fuzzy_enhanced")
@@ -62,9 +63,10 @@ def dynamics_networks(
 class EnhancedGrid(GrowingGaussians):
     """Gaussians with cos and sin at fixed centres (n, dimension): a growing basis that is full from the start."""
 
-    def __init__(self, centres: NDArray[np.float64], width: float) -> None:
+    def __init__(self, centres: Array, width: float) -> None:
         self._grid = centres
         super().__init__(centres.shape[1], width=width, threshold=np.inf, max_nodes=len(centres))
 
     def reset(self, centres: ArrayLike | None = None) -> None:
+        """Back to the grid, whatever ``centres`` says."""
         super().reset(self._grid)

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_continuous_are
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array
 
 
 class NoStabilisingSolution(ValueError):

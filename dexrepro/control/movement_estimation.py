@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
+
+from dexrepro.arrays import Real
 
 
 class MovementEstimation:
@@ -29,9 +30,9 @@ class MovementEstimation:
     def __init__(
         self,
         *,
-        stiffness: Any,
-        coefficients: Sequence[Any],
-        rates: Sequence[Any],
+        stiffness: Real,
+        coefficients: Sequence[Real],
+        rates: Sequence[Real],
         dt: float,
         window: float | None = None,
         floor: float = 1.0,
@@ -56,13 +57,16 @@ class MovementEstimation:
         self.reset()
 
     def reset(self) -> None:
+        """Start anew from the initial estimates, at time 0."""
         self.stiffness, initial = self._initial
         self.coefficients = list(initial)
         self._maximum = np.maximum if isinstance(self.stiffness, np.ndarray) else max
-        self.position, self.velocity, self.acceleration = self.coefficients[0], 0.0, 0.0
+        self.position = self.coefficients[0]
+        self.velocity: Real = 0.0
+        self.acceleration: Real = 0.0
         self._sample = 0
 
-    def __call__(self, position: Any, force: Any) -> None:
+    def __call__(self, position: Real, force: Real) -> None:
         """Take the arm's own position x_1 [m] and the contact force f_x [N] of one sample.
 
         Afterwards ``position``, ``velocity`` and ``acceleration`` are the estimate for this sample, before its
@@ -89,7 +93,10 @@ class MovementEstimation:
 
     def _predict(self, time: float) -> None:
         """Position, velocity and acceleration of the polynomial, by Horner's rule."""
-        before, position, velocity, acceleration = self.position, 0.0, 0.0, 0.0
+        before = self.position
+        position: Real = 0.0
+        velocity: Real = 0.0
+        acceleration: Real = 0.0
         for coefficient in reversed(self.coefficients):
             acceleration = acceleration * time + 2 * velocity
             velocity = velocity * time + position

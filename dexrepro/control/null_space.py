@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg.lapack import dposv
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array
 
 
 def consistent_inverse(mass: Array, jacobian: Array, damping: float = 1e-6) -> tuple[Array, Array]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array
 
 
 class NotExcited(ValueError):
@@ -53,6 +52,7 @@ class Windows:
 
     @property
     def required_rank(self) -> int:
+        """Number of unknowns of the regression, p (p + 1) / 2 of P and p d of K."""
         return self.change.shape[1] + self.state_input.shape[1]
 
     @property

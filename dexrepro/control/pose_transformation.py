@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array, Number
 
 
 class SpeedScaling:
@@ -20,7 +18,7 @@ class SpeedScaling:
     def __init__(self, *, base: float = 1.0, gain: float = 7.0, slow: float = 0.05, fast: float = 0.3) -> None:
         self.base, self.gain, self.slow, self.fast = base, gain, slow, fast
 
-    def __call__(self, speed: Any) -> Any:
+    def __call__(self, speed: Number) -> Number:
         """Scaling of the follower's displacement at hand speed ``speed`` [m/s], of the same shape."""
         share = (np.minimum(speed, self.fast) - self.slow) / (self.fast - self.slow)
         return self.base + self.gain * np.maximum(share, 0.0)
@@ -32,8 +30,8 @@ class ConstantScaling:
     def __init__(self, *, factor: float) -> None:
         self.factor = factor
 
-    def __call__(self, speed: Any) -> Any:
-        return self.factor * np.ones_like(speed)
+    def __call__(self, speed: Number) -> Number:
+        return self.factor * np.ones_like(speed)  # type: ignore[return-value]
 
 
 class RelativePose:

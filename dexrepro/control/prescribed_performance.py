@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class PerformanceBound:
         return np.where(error >= 0, self.upper * nu, self.lower * nu)
 
     def usage(self, error: Array, nu: float | Array) -> Array:
-        """chi, the share of the bound that ``error`` uses, with the error's sign; the bound holds while |chi| < 1."""
+        """chi (d,), the share of the bound that ``error`` (d,) uses, with its sign; the bound holds while |chi| < 1."""
         return error / self.limit(error, nu)
 
     def barrier_gradient(self, error: Array, nu: float | Array, clip: float = 0.995) -> Array:

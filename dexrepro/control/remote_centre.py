@@ -5,18 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-
-
-def cross(a: Any, b: Any) -> Array:
-    """Cross product of two vectors (3,), faster than numpy's for one pair."""
-    (x, y, z), (u, v, w) = a, b
-    return np.array((y * w - z * v, z * u - x * w, x * v - y * u))
+from dexrepro.arrays import Array
+from dexrepro.robots.rotations import rotation_matrix, tilt
 
 
 def closest_point(centre: Array, corners: Sequence[Array]) -> tuple[int, Array]:
@@ -54,16 +47,6 @@ def printed_centre_force(centre: Array, tip: Array, wrist: Array, stiffness: flo
     return result
 
 
-def tilt(desired: Array, actual: Array) -> Array:
-    """omega q_U, (3,) [rad]: the rotation vector from the desired tool axis to the actual one, unit vectors (3,)."""
-    axis = cross(desired, actual)
-    sine, cosine = math.sqrt(float(axis @ axis)), float(desired @ actual)
-    if sine < 1e-12:
-        # Aligned, or exactly opposed: then any axis across will do.
-        return np.zeros(3) if cosine > 0 else math.pi * _across(actual)
-    return axis * (math.atan2(sine, cosine) / sine)
-
-
 def aligned(rotation: Array, desired: Array, printed: bool = False) -> Array:
     """The actual orientation (3, 3) turned by the least rotation that brings its z axis to the desired one, Eq. (3.21).
 
@@ -71,17 +54,6 @@ def aligned(rotation: Array, desired: Array, printed: bool = False) -> Array:
     """
     turn = tilt(desired, rotation[:, 2])
     result: Array = rotation_matrix(turn if printed else -turn) @ rotation
-    return result
-
-
-def rotation_matrix(vector: Array) -> Array:
-    """Rotation (3, 3) of a rotation vector (3,) [rad], Eqs. (3.21), (3.22) corrected."""
-    angle = math.sqrt(float(vector @ vector))
-    if angle < 1e-15:
-        return np.eye(3)
-    x, y, z = (vector / angle).tolist()
-    skew = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
-    result: Array = np.eye(3) + math.sin(angle) * skew + 2.0 * math.sin(angle / 2) ** 2 * (skew @ skew)
     return result
 
 
@@ -98,11 +70,3 @@ def tool_axis(reference: Array, centre: Array, target: Array, lever: float) -> A
         return final
     result: Array = offset / math.sqrt(float(offset @ offset))
     return result
-
-
-def _across(vector: Array) -> Array:
-    """A unit vector at right angles to a unit vector."""
-    other = np.zeros(3)
-    other[int(np.abs(vector).argmin())] = 1.0
-    result = cross(vector, other)
-    return result / math.sqrt(float(result @ result))

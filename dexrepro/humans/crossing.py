@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array
 
 CUBE = 2.0  # edge [cm]
 LIP = (2.0, 8.0, 0.2)  # the plate on top of the cubes [cm]

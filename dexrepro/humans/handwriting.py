@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 from scipy.signal import butter, filtfilt
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array
 
 _START, _END = (0.0, 0.35), (1.0, 0.25)  # shared by the lower-case letters
 

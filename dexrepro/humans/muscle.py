@@ -11,14 +11,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.ndimage import uniform_filter1d
 from scipy.signal import butter, sosfiltfilt
 from scipy.special import expit
 
+from dexrepro.arrays import Array
 from dexrepro.humans.reaching import bump
-
-Array = NDArray[np.float64]
 
 
 def low_pass(

@@ -14,12 +14,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import signal
 
+from dexrepro.arrays import Array
 from dexrepro.control.pose_transformation import scaled_path
-
-Array = NDArray[np.float64]
 
 COMFORTABLE_ROLL = np.deg2rad(40.0)
 FOREARM_ROLL = np.deg2rad(80.0)
@@ -137,7 +135,7 @@ class Hand:
         return samples, np.repeat(self.centre[None], samples, 0), np.full(samples, self.roll)
 
     def wait(self, duration: float) -> None:
-        """Hold still, but for the tremor."""
+        """Hold still for a duration [s], but for the tremor."""
         _, path, roll = self._hold(duration)
         self._advance(path, roll)
 

@@ -11,13 +11,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter1d
 from scipy.optimize import brentq
 
+from dexrepro.arrays import Array
 from dexrepro.humans.waypoints import minimum_jerk
-
-Array = NDArray[np.float64]
 
 
 def bump(phase: ArrayLike, peak: ArrayLike, sharpness: ArrayLike) -> Array:
@@ -40,6 +39,7 @@ class Reach:
 
     @property
     def length(self) -> float:
+        """Distance from start to goal [cm]."""
         return float(np.hypot(self.goal[0] - self.start[0], self.goal[1] - self.start[1]))
 
     @property
@@ -104,6 +104,7 @@ class Reacher:
 
     @property
     def phase(self) -> Array:
+        """The phase u of every sample, (samples,), from 0 to 1."""
         return np.linspace(0.0, 1.0, self.samples)
 
     def ordinary(self, reach: Reach, size: ArrayLike = 1.0) -> Array:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import ruptures
-from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
-Array = NDArray[Any]
+from dexrepro.arrays import Array
 
 
 def change_point(time: Array, position: Array, rate: float = 10.0) -> float:

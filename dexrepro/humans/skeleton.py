@@ -8,15 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter1d
 
+from dexrepro.arrays import Array
 from dexrepro.humans.waypoints import minimum_jerk
-
-Array = NDArray[Any]
 
 JOINTS = ("left_shoulder", "left_elbow", "left_wrist", "right_shoulder", "right_elbow", "right_wrist")
 SIDES = np.array([-1.0, 1.0])  # left, right

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dexrepro.networks.basis import Array, Basis
+from dexrepro.arrays import Array
+from dexrepro.networks.basis import Basis
 
 
 class AdaptiveNetwork:

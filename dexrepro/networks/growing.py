@@ -7,7 +7,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dexrepro.networks.basis import Array, Basis, squared_distances
+from dexrepro.arrays import Array
+from dexrepro.networks.basis import Basis, squared_distances
 
 
 class GrowingGaussians(Basis):

@@ -8,23 +8,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.physics.plant import Point, RigidBody, SimulatedArm
 
 Place = str | Sequence[float]
-Force = Sequence[float] | NDArray[np.float64]
+Force = Sequence[float] | Array
+Load = Callable[[float, list[float], list[float]], Force]
 
 
 class Ends(Protocol):
     """Where elements look up what they act on."""
 
-    def end(self, place: Place) -> Point: ...
+    bodies: dict[str, RigidBody]
 
-    def arm(self, name: str) -> SimulatedArm: ...
+    def end(self, place: Place) -> Point:
+        """What a name or a fixed point (x, y, z) [m] stands for."""
+
+    def arm(self, name: str) -> SimulatedArm:
+        """The arm of a name. Raises KeyError where there is none."""
 
 
 class Element(Protocol):
@@ -106,7 +111,7 @@ class TipForce:
         self,
         name: str,
         on: str,
-        law: Callable[[float, NDArray[np.float64], NDArray[np.float64]], Force],
+        law: Callable[[float, Array, Array], Force],
     ) -> None:
         self.name, self.on, self.law = name, on, law
         self.force = (0.0, 0.0, 0.0)
@@ -193,7 +198,7 @@ class JointLoad:
     angles and rates are lists of n floats [rad, rad/s]; the law works on them at every physics step.
     """
 
-    def __init__(self, arm: str, law: Callable[[float, list[float], list[float]], Any]) -> None:
+    def __init__(self, arm: str, law: Load) -> None:
         self.name, self._arm, self._law = "load", arm, law
 
     def bind(self, world: Ends) -> Callable[[float], None]:
@@ -204,9 +209,7 @@ class JointLoad:
         return {}
 
 
-def joint_friction(
-    viscous: float, coulomb: float, width: float = 0.05
-) -> Callable[[float, list[float], list[float]], Any]:
+def joint_friction(viscous: float, coulomb: float, width: float = 0.05) -> Load:
     """Law of a JointLoad: -(viscous dq + coulomb tanh(dq / width)), in N m s/rad, N m and rad/s."""
     tanh = math.tanh
     return lambda _, __, rates: [-(viscous * rate + coulomb * tanh(rate / width)) for rate in rates]

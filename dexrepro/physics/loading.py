@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 import sys
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 import numpy as np
 import pybullet as bullet
@@ -42,20 +43,18 @@ def connect(gui: bool = False) -> int:
     return int(client)
 
 
-def load_arm(client: int, arm: Arm) -> int:
+def load_arm(client: int, arm: Arm, meshes: bool = False) -> int:
     """Load an arm with its inertias as given, without damping and with its motors off; return the body's id.
 
-    Joint i of the arm is joint i of the body. Raises LoadingError on any warning of the importer and if a mass or a
-    moment of inertia in the engine differs from the description.
+    Joint i of the arm is joint i of the body. meshes: load those of its links, which takes a while and is for pictures
+    alone; where the engine cannot, the other shapes stand for them. Raises LoadingError on any warning of the importer
+    and if a mass or a moment of inertia in the engine differs from the description.
     """
-    with tempfile.NamedTemporaryFile("w", suffix=".urdf", encoding="utf-8") as file:
-        file.write(arm.urdf())
-        file.flush()
-        with _captured() as output:
-            body = bullet.loadURDF(
-                file.name, useFixedBase=1, flags=bullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=client
-            )
-    warnings = [line for line in output[0].splitlines() if "arning" in line or "rror" in line]
+    body, warnings = _imported(client, arm.urdf(meshes))
+    if warnings and meshes:
+        if body >= 0:
+            bullet.removeBody(body, physicsClientId=client)
+        body, warnings = _imported(client, arm.urdf())
     if warnings:
         raise LoadingError(f"arm '{arm.name}': {'; '.join(warnings)}")
     undamped(client, body)
@@ -65,6 +64,39 @@ def load_arm(client: int, arm: Arm) -> int:
         body, joints, bullet.VELOCITY_CONTROL, forces=[0.0] * arm.dof, physicsClientId=client
     )
     return int(body)
+
+
+def _imported(client: int, text: str) -> tuple[int, list[str]]:
+    """Id of the body that a URDF text describes, -1 for none, and what the importer complains about."""
+    with tempfile.NamedTemporaryFile("w", suffix=".urdf", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        body = -1
+        with _captured() as output, suppress(bullet.error):
+            body = bullet.loadURDF(
+                file.name, useFixedBase=1, flags=bullet.URDF_USE_INERTIA_FROM_FILE, physicsClientId=client
+            )
+    warnings = [line for line in output[0].splitlines() if "arning" in line or "rror" in line]
+    return body, warnings or ([] if body >= 0 else ["the engine cannot load it"])
+
+
+def lighter(arm: Arm) -> float:
+    """The power of two by which an arm is to be lighter for the engine's inverse dynamics to take it, 1 for most.
+
+    It refuses inertias whose halves above and below the diagonal differ by 1e-15, which rounding does to heavy links.
+    Powers of two change no digit of the results.
+    """
+    moments = [
+        np.abs(link.inertia_matrix).max() + link.mass * np.dot(link.com, link.com)
+        for link in (*arm.links, *(link for _, link in arm.bodies))
+    ]
+    return 2.0 ** -max(0, math.ceil(math.log2(max(moments))))
+
+
+def disconnect(client: int) -> None:
+    """Close a physics client that may be closed already."""
+    if bullet.isConnected(client):
+        bullet.disconnect(physicsClientId=client)
 
 
 def undamped(client: int, body: int) -> None:

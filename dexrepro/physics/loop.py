@@ -6,19 +6,34 @@ import time as wall
 from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Protocol
 
 import numpy as np
 import pybullet as bullet
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
+from dexrepro.arrays import Array
 from dexrepro.experiment import Recording
-from dexrepro.physics.plant import Controller, SimulatedArm
+from dexrepro.physics.elements import Element, Ends
+from dexrepro.physics.plant import Controller, Reply, RigidBody, SimulatedArm
 
-if TYPE_CHECKING:
-    from dexrepro.physics.world import World
-
+Probe = Callable[[], ArrayLike]
 GUARD = 1e3  # sum of an arm's joint angles and rates [rad, rad/s] beyond which a run has diverged
+
+
+class Stage(Ends, Protocol):
+    """What stands in a world, and its clock: ``step`` and ``time`` [s], ``gui`` whether a window is open."""
+
+    step: float
+    time: float
+    gui: bool
+    client: int
+    arms: dict[str, SimulatedArm]
+    elements: list[Element]
+
+    @property
+    def moving(self) -> dict[str, RigidBody]:
+        """Rigid bodies that are not static."""
 
 
 class Progress:
@@ -38,10 +53,11 @@ class Recorder:
         self._numbers, self._rows = array("d"), 0
 
     def write(self, row: list[float]) -> None:
+        """Append one row; all rows of a recorder are of one length."""
         self._numbers.extend(row)
         self._rows += 1
 
-    def series(self, channels: Sequence[tuple[str, int]]) -> dict[str, NDArray[Any]]:
+    def series(self, channels: Sequence[tuple[str, int]]) -> dict[str, Array]:
         """Channels in the order of the rows; a width of 0 stands for a single number: (samples,), else (samples, k)."""
         rows = np.array(self._numbers).reshape(self._rows, sum(max(width, 1) for _, width in channels))
         result, start = {}, 0
@@ -55,10 +71,11 @@ class Recorder:
 class Probes:
     """Functions without arguments whose values, numbers, tuples of them or arrays of one shape, become channels."""
 
-    functions: Mapping[str, Callable[[], Any]]
+    functions: Mapping[str, Probe]
     channels: list[tuple[str, int]] = field(default_factory=list)
 
     def values(self) -> list[float]:
+        """What all functions return now, one after another; the first call settles the channels' widths."""
         row: list[float] = []
         results = [function() for function in self.functions.values()]
         if not self.channels:
@@ -75,13 +92,13 @@ class Probes:
 
 
 def run(
-    world: World,
+    world: Stage,
     duration: float,
     controllers: Mapping[str, Controller],
     control_period: float | None,
-    probes: Mapping[str, Callable[[], Any]],
+    probes: Mapping[str, Probe],
     stop: Callable[[float], str | None] | None,
-    events: Sequence[tuple[float, Callable[[], Any]]],
+    events: Sequence[tuple[float, Callable[[], object]]],
     record_every: int,
     on_divergence: str,
 ) -> Recording:
@@ -141,9 +158,9 @@ class _Scene:
 
     def __init__(
         self,
-        world: World,
+        world: Stage,
         controllers: Mapping[str, Controller],
-        probes: Mapping[str, Callable[[], Any]],
+        probes: Mapping[str, Probe],
         period: float,
     ) -> None:
         unknown = set(controllers) - set(world.arms)
@@ -154,7 +171,7 @@ class _Scene:
         for arm in self._arms:
             arm.prepare(period)
         self._driven = [(world.arms[name], controller) for name, controller in controllers.items()]
-        self._commands: dict[str, Any] = {}
+        self._commands: dict[str, Reply] = {}
         self._bodies = list(world.moving.values())
         self._elements = list(world.elements)
         self._forces = [element.bind(world) for element in self._elements]
@@ -217,7 +234,7 @@ class _Scene:
             row += self._probes.values()
         self._recorder.write(row)
 
-    def series(self) -> dict[str, NDArray[Any]]:
+    def series(self) -> dict[str, Array]:
         channels: list[tuple[str, int]] = [("time", 0)]
         for arm in self._arms:
             names = [("position", arm.dof), ("velocity", arm.dof), ("torque", arm.dof), ("tip", 3), ("force", 3)]

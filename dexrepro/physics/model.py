@@ -7,13 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 import pybullet as bullet
-from numpy.typing import NDArray
 
-from dexrepro.physics.loading import connect, load_arm
-from dexrepro.physics.plant import EndPoint, rotated
+from dexrepro.arrays import Array
+from dexrepro.physics.loading import connect, disconnect, lighter, load_arm
+from dexrepro.physics.plant import EndPoint
 from dexrepro.robots.arm import Arm
-
-Array = NDArray[np.float64]
+from dexrepro.robots.rotations import rotated
 
 
 class RigidBodyModel:
@@ -28,8 +27,9 @@ class RigidBodyModel:
         self.arm = arm.scaled(1.0 + mass_error) if mass_error else arm
         self.dof = arm.dof
         self._client = connect()
-        self._close = weakref.finalize(self, _disconnect, self._client)
-        self._body = load_arm(self._client, self.arm)
+        self._close = weakref.finalize(self, disconnect, self._client)
+        self._factor = lighter(self.arm)
+        self._body = load_arm(self._client, self.arm.scaled(self._factor) if self._factor < 1 else self.arm)
         bullet.setGravity(*gravity, physicsClientId=self._client)
         self._zeros = [0.0] * arm.dof
         self._indices = list(range(arm.dof))
@@ -41,28 +41,28 @@ class RigidBodyModel:
 
     def mass_matrix(self, q: Array) -> Array:
         """M(q), shape (n, n) [kg m^2]."""
-        return np.array(bullet.calculateMassMatrix(self._body, _list(q), physicsClientId=self._client))
+        return np.array(bullet.calculateMassMatrix(self._body, _list(q), physicsClientId=self._client)) / self._factor
 
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array) -> Array:
         """M(q) ddq + C(q, dq) dq + G(q), shape (n,) [N m]."""
         torque = bullet.calculateInverseDynamics(
             self._body, _list(q), _list(dq), _list(ddq), physicsClientId=self._client
         )
-        return np.array(torque)
+        return np.array(torque) / self._factor
 
     def bias(self, q: Array, dq: Array) -> Array:
         """C(q, dq) dq + G(q), shape (n,) [N m]."""
         torque = bullet.calculateInverseDynamics(
             self._body, _list(q), _list(dq), self._zeros, physicsClientId=self._client
         )
-        return np.array(torque)
+        return np.array(torque) / self._factor
 
     def gravity(self, q: Array) -> Array:
         """G(q), the torque that holds the arm still, shape (n,) [N m]."""
         torque = bullet.calculateInverseDynamics(
             self._body, _list(q), self._zeros, self._zeros, physicsClientId=self._client
         )
-        return np.array(torque)
+        return np.array(torque) / self._factor
 
     def coriolis(self, q: Array, dq: Array) -> Array:
         """C(q, dq) dq, shape (n,) [N m]."""
@@ -102,8 +102,3 @@ class RigidBodyModel:
 
 def _list(values: Array) -> list[float]:
     return values.tolist() if isinstance(values, np.ndarray) else list(values)
-
-
-def _disconnect(client: int) -> None:
-    if bullet.isConnected(client):
-        bullet.disconnect(physicsClientId=client)

@@ -6,14 +6,10 @@ every step) for hundreds of runs at once.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.robots.planar_chain import PlanarChain
-
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array, Mask, Real
+from dexrepro.robots.planar import PlanarChain
 
 
 class PlanarPairs:
@@ -25,13 +21,13 @@ class PlanarPairs:
 
     def __init__(
         self,
-        chain: PlanarChain,
+        chain: PlanarChain[Array],
         position: Array,
         *,
-        stiffness: Any,
-        rest_length: Any,
+        stiffness: Real,
+        rest_length: Real,
         dt: float,
-        unilateral: bool | NDArray[np.bool_] = True,
+        unilateral: bool | Mask = True,
     ) -> None:
         self.chain, self.dt = chain, dt
         self.position, self.velocity = position.copy(), np.zeros_like(position)

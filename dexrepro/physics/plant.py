@@ -6,19 +6,23 @@ world frame, and ``push(fx, fy, fz)`` [N]. Plain floats: at 1 kHz small arrays c
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable, Sequence
 from operator import add
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pybullet as bullet
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from dexrepro.physics.loading import load_arm
+from dexrepro.arrays import Array
+from dexrepro.control.contract import Command
+from dexrepro.physics.loading import connect, disconnect, lighter, load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import PlanarTip, forward, jacobian
+from dexrepro.robots.kinematics import forward, jacobian
+from dexrepro.robots.planar import PlanarTip
+from dexrepro.robots.rotations import rotated
 
 
 class Point:
@@ -44,6 +48,7 @@ class RigidBody(Point):
         self.read()
 
     def read(self) -> None:
+        """Take pose and velocity from the engine."""
         (self.x, self.y, self.z), self.orientation = bullet.getBasePositionAndOrientation(
             self.body, physicsClientId=self.client
         )
@@ -55,6 +60,7 @@ class RigidBody(Point):
         bullet.resetBasePositionAndOrientation(self.body, position, self.orientation, physicsClientId=self.client)
 
     def push(self, fx: float, fy: float, fz: float) -> None:
+        """Add a force [N], world frame, at the centre of mass."""
         bullet.applyExternalForce(
             self.body, -1, (fx, fy, fz), (self.x, self.y, self.z), bullet.WORLD_FRAME, physicsClientId=self.client
         )
@@ -78,19 +84,22 @@ class Sense:
         self.felt: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
-    def position(self) -> NDArray[np.float64]:
+    def position(self) -> Array:
+        """Measured joint angles (n,) [rad]."""
         return np.array(self.angles)
 
     @property
-    def velocity(self) -> NDArray[np.float64]:
+    def velocity(self) -> Array:
+        """Measured joint rates (n,) [rad/s]."""
         return np.array(self.rates)
 
     @property
-    def force(self) -> NDArray[np.float64]:
+    def force(self) -> Array:
+        """Force on the end point as the sensor reports it, (3,), world frame [N]."""
         return np.array(self.felt)
 
     @property
-    def tip(self) -> NDArray[np.float64]:
+    def tip(self) -> Array:
         """End point, shape (3,), world frame [m], from the measured joint angles."""
         plant = self._plant
         if plant.joint_channel is None:
@@ -99,13 +108,20 @@ class Sense:
         return forward(plant.arm, self.position)[0]
 
     @property
-    def tip_velocity(self) -> NDArray[np.float64]:
+    def tip_velocity(self) -> Array:
         """Velocity of the end point, shape (3,), world frame [m/s], from the measured joint angles and rates."""
         plant = self._plant
         if plant.joint_channel is None:
             plant.locate()
             return np.array((plant.vx, plant.vy, plant.vz))
         return jacobian(plant.arm, self.position)[:3] @ self.velocity
+
+
+Torque = Sequence[float] | Array
+Answer = Torque | tuple[Torque, Torque] | Command
+Reply = Answer | Callable[[Sense], Answer]
+Controller = Callable[[Sense], Reply]
+"""What drives an arm: joint torques, a tuple (torque, damping), or an inner loop; see ``World.run``."""
 
 
 class SimulatedArm(Point):
@@ -116,13 +132,18 @@ class SimulatedArm(Point):
         client: int,
         name: str,
         arm: Arm,
-        position: NDArray[np.float64],
+        position: Array,
         sensor: Sensor,
         rng: np.random.Generator | None,
+        meshes: bool = False,
     ) -> None:
         super().__init__((0.0, 0.0, 0.0))
         self.client, self.name, self.arm, self.dof = client, name, arm, arm.dof
-        self.body = load_arm(client, arm)
+        self.body = load_arm(client, arm, meshes)
+        self._dynamics = client, self.body, lighter(arm)
+        if self._dynamics[2] < 1:
+            self._dynamics = _twin(client, arm)
+            weakref.finalize(self, disconnect, self._dynamics[0])
         self.links = [link.name for link in arm.links] + [link.name for _, link in arm.bodies]
         self.feels_contact = False
         self._indices = list(range(arm.dof))
@@ -138,13 +159,13 @@ class SimulatedArm(Point):
         self.load = self._zeros
         self.q: tuple[float, ...] = ()
         self.dq: tuple[float, ...] = ()
-        self.torque: Any = self._zeros
+        self.torque: Sequence[float] = self._zeros
         self.fx = self.fy = self.fz = 0.0
         self._located = False
         self.reset(position)
         self.sense = Sense(self)
 
-    def reset(self, position: NDArray[np.float64], velocity: NDArray[np.float64] | None = None) -> None:
+    def reset(self, position: Array, velocity: Array | None = None) -> None:
         """Put the joints at given angles [rad] and rates [rad/s] (at rest by default)."""
         rates = self._zeros if velocity is None else np.asarray(velocity, dtype=float).tolist()
         for index, angle, rate in zip(self._indices, np.asarray(position, dtype=float).tolist(), rates, strict=True):
@@ -202,12 +223,12 @@ class SimulatedArm(Point):
         place = [a + b for a, b in zip(state[4], rotated(state[5], point), strict=True)]
         bullet.applyExternalForce(self.body, index, force, place, bullet.WORLD_FRAME, physicsClientId=self.client)
 
-    def add_load(self, torque: Any) -> None:
+    def add_load(self, torque: Sequence[float] | Array) -> None:
         """Add joint torques [N m] that are not the controller's (friction, drag)."""
         self.load = [a + float(b) for a, b in zip(self.load, torque, strict=True)]
 
     def observe(self, time: float, sample: bool) -> Sense:
-        """Refresh what the controller sees; imperfect sensors deliver a new value only at control instants."""
+        """What the controller sees at a time [s]; imperfect sensors have news at control instants (``sample``)."""
         sense = self.sense
         sense.time = time
         if self.joint_channel is None:
@@ -221,7 +242,7 @@ class SimulatedArm(Point):
             sense.felt = self.force_channel((self.fx, self.fy, self.fz))
         return sense
 
-    def command(self, torque: Any, damping: Any, step: float) -> None:
+    def command(self, torque: Torque, damping: Torque | None, step: float) -> None:
         """Set this step's joint torque [N m], with damping [N m s/rad] applied implicitly, within the effort limits."""
         if damping is not None:
             torque = self._damped(np.asarray(torque, dtype=float), damping, step)
@@ -239,18 +260,19 @@ class SimulatedArm(Point):
             self.body, self._indices, bullet.TORQUE_CONTROL, forces=total, physicsClientId=self.client
         )
 
-    def _damped(self, torque: NDArray[np.float64], damping: Any, step: float) -> NDArray[np.float64]:
+    def _damped(self, torque: Array, damping: Torque, step: float) -> Array:
         """Torque minus damping times the velocity at the END of the step.
 
         From M dq+ = M dq + h (torque + load - bias - D dq+) follows the acceleration a of (M + h D) a = torque + load
         - bias - D dq, and the torque to apply is torque - D (dq + h a). D is a vector (diagonal) or a matrix.
         """
-        body, client = self.body, self.client
+        client, body, factor = self._dynamics
         damping = np.asarray(damping, dtype=float)
         multiply = np.multiply if damping.ndim == 1 else np.matmul
         rate = np.array(self.dq)
-        mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client))
+        mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client)) / factor
         bias = np.array(bullet.calculateInverseDynamics(body, self.q, self.dq, self._zeros, physicsClientId=client))
+        bias /= factor
         rest = torque + self.load - bias - multiply(damping, rate)
         if self._planar is None and (self.fx or self.fy or self.fz):
             linear, _ = bullet.calculateJacobian(
@@ -334,12 +356,9 @@ class EndPoint:
         self.for_jacobian: tuple[float, ...] = tuple((axes.T @ local[:3, 3]).tolist())
 
 
-def rotated(quaternion: tuple[float, ...], vector: tuple[float, ...]) -> tuple[float, float, float]:
-    """A vector turned by a quaternion (x, y, z, w): v + 2 u x (u x v + w v)."""
-    i, j, k, w = quaternion
-    a, b, c = vector
-    x, y, z = j * c - k * b + w * a, k * a - i * c + w * b, i * b - j * a + w * c
-    return a + 2 * (j * z - k * y), b + 2 * (k * x - i * z), c + 2 * (i * y - j * x)
-
-
-Controller = Callable[[Sense], Any]
+def _twin(client: int, arm: Arm) -> tuple[int, int, float]:
+    """A client of its own, under the same gravity, with an arm light enough for inverse dynamics, and its factor."""
+    parameters, factor = bullet.getPhysicsEngineParameters(physicsClientId=client), lighter(arm)
+    twin = connect()
+    bullet.setGravity(*(parameters[f"gravityAcceleration{axis}"] for axis in "XYZ"), physicsClientId=twin)
+    return twin, load_arm(twin, arm.scaled(factor)), factor

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pybullet as bullet
-from numpy.typing import NDArray
+
+from dexrepro.arrays import Array, Image
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class Overhead:
         """Focal length in pixels."""
         return self.size[1] / 2 / float(np.tan(np.radians(self.field_of_view) / 2))
 
-    def project(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def project(self, points: Array) -> Array:
         """Pixel coordinates (..., 2), column and row, of points (..., 3) [m]; pixel centres are whole numbers."""
         x, y, z = np.moveaxis(np.asarray(points) - self.position, -1, 0)
         scale = self.focal / -z
@@ -54,7 +55,7 @@ class Overhead:
         return x, self.position[1] - (row - self.size[1] / 2 + 0.5) * scale
 
 
-def look_down(client: int, camera: Overhead) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+def look_down(client: int, camera: Overhead) -> tuple[Image, Array]:
     """Colours (height, width, 3) and heights z (height, width) [m] that an overhead camera sees, free of noise."""
     (x, y, z), (width, height) = camera.position, camera.size
     view = bullet.computeViewMatrix((x, y, z), (x, y, z - 1.0), (0.0, 1.0, 0.0), physicsClientId=client)
@@ -71,7 +72,7 @@ def look_down(client: int, camera: Overhead) -> tuple[NDArray[np.uint8], NDArray
     return colours, z - depth
 
 
-def photograph(client: int, camera: Camera, size: tuple[int, int]) -> NDArray[np.uint8]:
+def photograph(client: int, camera: Camera, size: tuple[int, int]) -> Image:
     """Picture of shape (height, width, 3) for a size (width, height), by PyBullet's software renderer."""
     width, height = size
     view = bullet.computeViewMatrixFromYawPitchRoll(

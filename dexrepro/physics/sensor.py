@@ -7,7 +7,8 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from dexrepro.arrays import Array
 
 Force = tuple[float, float, float]
 
@@ -32,10 +33,12 @@ class Sensor:
 
     @property
     def exact_force(self) -> bool:
+        """Whether the force is reported as it is."""
         return self.force_noise == 0 and self.force_delay == 0 and math.isinf(self.force_cutoff)
 
     @property
     def exact_joints(self) -> bool:
+        """Whether angles and rates are reported as they are."""
         return self.encoder_resolution == 0 and self.velocity_noise == 0 and math.isinf(self.velocity_cutoff)
 
 
@@ -78,12 +81,10 @@ class JointChannel:
             raise ValueError("noisy joint velocities need a random generator: add_arm(..., rng=rng('noise'))")
         self._sensor, self._period, self._rng = sensor, period, rng
         self._share = smoothing(sensor.velocity_cutoff, period)
-        self._previous: NDArray[np.float64] | None = None
-        self._velocity: NDArray[np.float64] | None = None
+        self._previous: Array | None = None
+        self._velocity: Array | None = None
 
-    def __call__(
-        self, position: NDArray[np.float64], velocity: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def __call__(self, position: Array, velocity: Array) -> tuple[Array, Array]:
         grid = self._sensor.encoder_resolution
         if grid:
             position = grid * np.round(position / grid)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pybullet as bullet
 
+from dexrepro.arrays import Real
+from dexrepro.physics.elements import Ends
 from dexrepro.physics.plant import RigidBody, SimulatedArm
+from dexrepro.robots.rotations import rotated
 
 Vector = tuple[float, float, float]
 
@@ -22,14 +24,14 @@ class Cushion:
     """
 
     def __init__(
-        self, stiffness: Any, dt: float, *, fast: float, slow: float, fast_time: float, slow_time: float
+        self, stiffness: Real, dt: float, *, fast: float, slow: float, fast_time: float, slow_time: float
     ) -> None:
         self.side, self.fast, self.slow = 2.0 * stiffness, fast, slow
         self.fast_share, self.slow_share = -math.expm1(-dt / fast_time), -math.expm1(-dt / slow_time)
-        self.fast_state: Any = 0.0
-        self.slow_state: Any = 0.0
+        self.fast_state: Real = 0.0
+        self.slow_state: Real = 0.0
 
-    def force(self, compression: Any, scale: Any = 1.0) -> Any:
+    def force(self, compression: Real, scale: Real = 1.0) -> Real:
         """Force [N] of a compression [m], the elastic branch multiplied by ``scale``; one call a time step."""
         self.fast_state = self.fast_state + self.fast_share * (compression - self.fast_state)
         self.slow_state = self.slow_state + self.slow_share * (compression - self.slow_state)
@@ -67,7 +69,7 @@ class SoftObject:
         self.scale = scale
         self.forces, self.slip = [0.0, 0.0], 0.0
 
-    def bind(self, world: Any) -> Callable[[float], None]:
+    def bind(self, world: Ends) -> Callable[[float], None]:
         ends = [world.arm(name) for name in self.arms]
         body = world.bodies[self.body]
         anchors: list[Vector | None] = [None, None]
@@ -102,8 +104,8 @@ class SoftObject:
         """Friction force on the body [N] and the point of the body, in its frame, that the end point sticks to."""
         rx, ry, rz = end.x - body.x, end.y - body.y, end.z - body.z
         if anchor is None:
-            anchor = _turned(body.orientation, (rx, ry, rz), inverse=True)
-        ax, ay, az = _turned(body.orientation, anchor)
+            anchor = rotated(_inverse(body.orientation), (rx, ry, rz))
+        ax, ay, az = rotated(body.orientation, anchor)
         wx, wy, wz = body.spin
         offset = _across((rx - ax, ry - ay, rz - az), line)
         rate = _across(
@@ -123,7 +125,7 @@ class SoftObject:
         # The anchor follows until the elastic part alone gives the largest friction.
         moved = tuple(u - p / self.shear for u, p in zip(offset, pull))
         self.slip += math.sqrt(sum(m * m for m in moved))
-        back = _turned(body.orientation, (ax + moved[0], ay + moved[1], az + moved[2]), inverse=True)
+        back = rotated(_inverse(body.orientation), (ax + moved[0], ay + moved[1], az + moved[2]))
         return pull, back  # type: ignore[return-value]
 
     def channels(self) -> dict[str, float]:
@@ -136,11 +138,7 @@ def _across(vector: Vector, line: Vector) -> Vector:
     return vector[0] - along * line[0], vector[1] - along * line[1], vector[2] - along * line[2]
 
 
-def _turned(quaternion: tuple[float, ...], vector: Vector, inverse: bool = False) -> Vector:
-    """A vector turned by a unit quaternion (x, y, z, w), or by its inverse."""
+def _inverse(quaternion: tuple[float, ...]) -> tuple[float, ...]:
+    """Inverse of a unit quaternion (x, y, z, w)."""
     i, j, k, w = quaternion
-    if inverse:
-        i, j, k = -i, -j, -k
-    a, b, c = vector
-    px, py, pz = j * c - k * b + w * a, k * a - i * c + w * b, i * b - j * a + w * c
-    return a + 2 * (j * pz - k * py), b + 2 * (k * px - i * pz), c + 2 * (i * py - j * px)
+    return -i, -j, -k, w

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TypedDict, Unpack
 
 import numpy as np
 import pybullet as bullet
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from dexrepro.arrays import Array, Image
 from dexrepro.experiment import Recording
 from dexrepro.physics import loop
 from dexrepro.physics.elements import Element, Place
@@ -23,15 +24,31 @@ SHAPES = {"box": bullet.GEOM_BOX, "sphere": bullet.GEOM_SPHERE, "cylinder": bull
           "capsule": bullet.GEOM_CAPSULE}  # fmt: skip
 
 
+class BodyOptions(TypedDict, total=False):
+    """What :meth:`World.add_body` takes beside name, shapes, position and mass; the last seven by PyBullet's names."""
+
+    rpy: Vector
+    inertia: Vector
+    friction: float
+    collides: bool
+    spinningFriction: float
+    rollingFriction: float
+    restitution: float
+    contactStiffness: float
+    contactDamping: float
+    linearDamping: float
+    angularDamping: float
+
+
 class World:
     """One physics client of its own, closed at the end of a ``with`` block; several may live side by side.
 
     step: physics step [s]; gravity: (3,) [m/s^2]; perturbation: added to every initial joint angle [rad];
     iterations: of the contact solver. The world frame has z up; positions in m, forces in N. Setting ``World.live``
-    makes every world open a window and run in real time.
+    makes every world open a window and run in real time; ``World.meshes`` shows arms as their makers drew them.
     """
 
-    live = False
+    live = meshes = False
 
     def __init__(
         self,
@@ -80,7 +97,7 @@ class World:
         """
         self._check_new(name)
         start = np.asarray(position, dtype=float) + self.perturbation
-        plant = SimulatedArm(self.client, name, arm, start, sensor, rng)
+        plant = SimulatedArm(self.client, name, arm, start, sensor, rng, World.meshes or self.gui)
         plant.feels_contact = contacts
         if not contacts:
             self._untouchable(plant.body)
@@ -120,13 +137,25 @@ class World:
         return self.bodies[name]
 
     def add_box(
-        self, name: str, size: Vector, position: Vector, mass: float = 0.0, colour: Colour = GREY, **options: Any
+        self,
+        name: str,
+        size: Vector,
+        position: Vector,
+        mass: float = 0.0,
+        colour: Colour = GREY,
+        **options: Unpack[BodyOptions],
     ) -> RigidBody:
         """A box with sides (x, y, z) [m], centred at a position [m]; options as for add_body."""
         return self.add_body(name, [Shape("box", tuple(size), colour=colour)], position, mass=mass, **options)
 
     def add_sphere(
-        self, name: str, radius: float, position: Vector, mass: float = 0.0, colour: Colour = GREY, **options: Any
+        self,
+        name: str,
+        radius: float,
+        position: Vector,
+        mass: float = 0.0,
+        colour: Colour = GREY,
+        **options: Unpack[BodyOptions],
     ) -> RigidBody:
         """A sphere of a radius [m], centred at a position [m]; options as for add_body."""
         return self.add_body(name, [Shape("sphere", (radius,), colour=colour)], position, mass=mass, **options)
@@ -168,6 +197,7 @@ class World:
         bullet.changeDynamics(plant.body, plant.links.index(link), mass=mass, physicsClientId=self.client)
 
     def arm(self, name: str) -> SimulatedArm:
+        """The arm of a name. Raises KeyError, naming those there are, where there is none."""
         try:
             return self.arms[name]
         except KeyError:
@@ -186,7 +216,7 @@ class World:
         return {name: body for name, body in self.bodies.items() if body.mass > 0}
 
     def contacts(self, name: str) -> list[Touch]:
-        """Points where a named body touches anything, as of the last step."""
+        """Points [m] and forces [N] where a named body touches anything, as of the last step."""
         return touches(self.client, self._body(name))
 
     def contact_force(self, first: str, second: str) -> float:
@@ -204,9 +234,9 @@ class World:
         duration: float,
         controllers: Mapping[str, Controller] | None = None,
         control_period: float | None = None,
-        probes: Mapping[str, Callable[[], Any]] | None = None,
+        probes: Mapping[str, loop.Probe] | None = None,
         stop: Callable[[float], str | None] | None = None,
-        events: Sequence[tuple[float, Callable[[], Any]]] = (),
+        events: Sequence[tuple[float, Callable[[], object]]] = (),
         record_every: int = 1,
         on_divergence: str = "raise",
     ) -> Recording:
@@ -238,7 +268,7 @@ class World:
         poses: Mapping[str, ArrayLike] | None = None,
         camera: Camera = Camera(),
         size: tuple[int, int] = (640, 480),
-    ) -> NDArray[np.uint8]:
+    ) -> Image:
         """Picture (height, width, 3) of the scene with arms at given joint angles and bodies at given poses (7,).
 
         The state of the simulation is left as it was. size: (width, height) in pixels.
@@ -256,7 +286,7 @@ class World:
         bullet.removeState(state, physicsClientId=self.client)
         return image
 
-    def look_down(self, camera: Overhead) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+    def look_down(self, camera: Overhead) -> tuple[Image, Array]:
         """Colours (height, width, 3) and heights z (height, width) [m] that an overhead camera sees, free of noise."""
         return look_down(self.client, camera)
 
@@ -274,7 +304,7 @@ class World:
 
     def snapshot(
         self, recording: Recording, time: float, camera: Camera = Camera(), size: tuple[int, int] = (640, 480)
-    ) -> NDArray[np.uint8]:
+    ) -> Image:
         """Picture (height, width, 3) of the sample of a recording that is nearest to a time [s]."""
         index = int(np.abs(recording.time - time).argmin())
         positions = {

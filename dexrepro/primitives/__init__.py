@@ -13,7 +13,7 @@ from .incremental import Blocks, ExtendedKernels, extend, extend_styles, interpo
 from .kernels import FeatureMap, GaussianKernels, TruncatedKernels, phase
 from .pseudo_inverse import GrowingRegression, extended_pseudo_inverse
 from .regression import least_squares, locally_weighted
-from .spring_damper import SpringDamper
+from .transformation import SpringDamper, Step, exact, runge_kutta, semi_implicit
 
 __all__ = [
     "DMP",
@@ -27,8 +27,10 @@ __all__ = [
     "Propagator",
     "Scaling",
     "SpringDamper",
+    "Step",
     "Trajectory",
     "TruncatedKernels",
+    "exact",
     "extend",
     "extend_styles",
     "extended_pseudo_inverse",
@@ -38,4 +40,6 @@ __all__ = [
     "locally_weighted",
     "original",
     "phase",
+    "runge_kutta",
+    "semi_implicit",
 ]

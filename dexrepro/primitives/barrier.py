@@ -14,12 +14,11 @@ Errors have shape (..., d); leading axes are independent runs.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[Any]
+from dexrepro.arrays import Array, Mask
 
 
 @dataclass(frozen=True)
@@ -57,7 +56,7 @@ class Constraint:
             return np.add.reduce(z1 * z1, axis=-1, keepdims=True), np.square(self.upper)
         return z1 * z1, np.where(z1 > 0, np.square(self.upper), np.square(self.lower))
 
-    def satisfied(self, z1: Array) -> NDArray[np.bool_]:
+    def satisfied(self, z1: Array) -> Mask:
         """Whether the constraint holds strictly, shape (...)."""
         square, bound = self._squares(z1)
         held = square < bound if self.inside else square > bound
@@ -121,7 +120,7 @@ def case_two_value(z1: Array, lower: float, upper: float) -> Array:
 def closed_loop_rates(
     z1: Array, z2: Array, constraint: Constraint, gains: Gains, coupling: float, pull: Array | None = None
 ) -> tuple[Array, Array]:
-    """dz1/dt and dz2/dt under the consistent law; ``coupling`` is g1, ``pull`` replaces the case's W."""
+    """dz1/dt and dz2/dt, (..., d), under the consistent law; ``coupling`` is g1, ``pull`` replaces the case's W."""
     w = constraint.pull(z1) if pull is None else pull
     rate1 = gains.position / gains.velocity * (w + coupling * z2)
     return rate1, -gains.velocity * gain(z1, constraint, gains, coupling) * z2
@@ -176,4 +175,4 @@ def _decay(
         half = _decay(z1, z2, constraint, gains, coupling, dt / 2, halvings - 1)
         return _decay(*half, constraint, gains, coupling, dt / 2, halvings - 1)
     outward = z1 / np.linalg.norm(z1) * (1.0 if constraint.inside else -1.0)
-    return z1, z2 - max(0.0, z2 @ outward) * outward
+    return z1, z2 - max(0.0, float(z2 @ outward)) * outward

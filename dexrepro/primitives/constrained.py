@@ -11,9 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.primitives.barrier import Array, Constraint, Gains, gain
+from dexrepro.arrays import Array, Mask
+from dexrepro.primitives.barrier import Constraint, Gains, gain
+from dexrepro.primitives.transformation import SpringDamper, Step
+
+CRITICAL = SpringDamper(25.0 * 25.0 / 4, 25.0)
+"""alpha_z = 25, beta_z = alpha_z / 4, as printed in Sect. 6.4."""
 
 
 @dataclass(frozen=True)
@@ -29,21 +33,24 @@ class Reference:
 class Skill:
     """What the primitive contributes: its equation tau dv/dt = alpha_z (beta_z (g - x) - v) + f, tau dx/dt = v.
 
-    forcing: f at the control instants, shape (n, ..., d); goal: shape (..., d); nominal: dv/dt of the unconstrained
-    primitive at the same instants (needed by the law ``feedforward``), shape (n, ..., d).
+    system: K = alpha_z beta_z and D = alpha_z; forcing: f at the control instants, shape (n, ..., d); goal: shape
+    (..., d); nominal: dv/dt of the unconstrained primitive at the same instants (needed by the law ``feedforward``).
     """
 
     forcing: Array
     goal: Array
     time_constant: float | Array
-    stiffness: float = 25.0 * 25.0 / 4
-    damping: float = 25.0
+    system: SpringDamper = CRITICAL
     nominal: Array | None = None
 
     def acceleration(self, forcing: Array, position: Array, velocity: Array) -> Array:
         """dv/dt of the primitive alone, Eq. (6.1)."""
-        spring = self.stiffness * (self.goal - position) - self.damping * velocity
-        return (spring + forcing) / self.time_constant
+        return self.system.acceleration(position, velocity, self.goal, forcing) / self.time_constant
+
+    def step(self, k: int, coupling: Callable[[Array, Array], Array] | None = None) -> Step:
+        """The step from instant k to the next, for an integrator, with a coupling(x, v) added to tau dv/dt."""
+        forcing = self.forcing[k], self.forcing[min(k + 1, len(self.forcing) - 1)]
+        return Step(self.system, self.goal, self.time_constant, forcing, coupling)
 
 
 @dataclass(slots=True)
@@ -124,11 +131,12 @@ class Path:
     velocity: Array
     distance: Array
     lyapunov: Array
-    projected: NDArray[np.bool_]
-    altered: NDArray[np.bool_]
+    projected: Mask
+    altered: Mask
 
     @property
-    def defined(self) -> NDArray[np.bool_]:
+    def defined(self) -> Mask:
+        """Where the state is within the barrier's domain, (n, ...)."""
         return np.isfinite(self.distance)
 
 
@@ -219,7 +227,7 @@ def _moment(
     return now, stabiliser, kn
 
 
-def _project(moved: Array, error: Array, target: Array, margin: Array, rate: float) -> tuple[Array, NDArray[np.bool_]]:
+def _project(moved: Array, error: Array, target: Array, margin: Array, rate: float) -> tuple[Array, Mask]:
     """Put positions beyond the discrete barrier back on its sphere about the target."""
     offset = moved - target
     distance = np.sqrt(_dot(offset, offset))

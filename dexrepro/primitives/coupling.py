@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.primitives.constrained import Skill
+from dexrepro.arrays import Array
+from dexrepro.primitives.constrained import CRITICAL, Skill
+from dexrepro.primitives.transformation import Integrator, SpringDamper, Step, runge_kutta, semi_implicit
 
-Array = NDArray[Any]
 Term = Callable[[int, Array, Array], Array]
 
 
@@ -57,29 +57,16 @@ def dynamic_potential(
     return np.stack([level[..., 1] - level[..., 0], level[..., 3] - level[..., 2]], axis=-1) / (2 * step)
 
 
-def coupled_rollout(skill: Skill, term: Term, dt: float, position: Array, velocity: Array) -> Array:
-    """Path (n, ..., d) of a primitive with a term(k, x, v) added to tau dv/dt, by the classical Runge-Kutta method.
-
-    A steering term turns v without braking it; explicit Euler steps would speed it up and blame the term.
-    """
+def coupled_rollout(
+    skill: Skill, term: Term, dt: float, position: Array, velocity: Array, integrator: Integrator = runge_kutta
+) -> Array:
+    """Path (n, ..., d) of a primitive with a term(k, x, v) added to tau dv/dt; dt: step [s]."""
     x, v = np.array(position, float, subok=True), np.array(velocity, float, subok=True)
-    tau = skill.time_constant
     path = np.empty((len(skill.forcing), *x.shape))
-    path[0] = x
-    for k in range(len(path) - 1):
-        first, last = skill.forcing[k], skill.forcing[k + 1]
-        rate_x = rate_v = total_x = total_v = np.zeros(())
-        for forcing, share, weight in (
-            (first, 0.0, 1),
-            ((first + last) / 2, 0.5, 2),
-            ((first + last) / 2, 0.5, 2),
-            (last, 1.0, 1),
-        ):
-            x_at, v_at = x + share * dt * rate_x, v + share * dt * rate_v
-            rate_x, rate_v = v_at / tau, skill.acceleration(forcing, x_at, v_at) + term(k, x_at, v_at) / tau
-            total_x, total_v = total_x + weight * rate_x, total_v + weight * rate_v
-        x, v = x + dt / 6 * total_x, v + dt / 6 * total_v
-        path[k + 1] = x
+    for k in range(len(path)):
+        path[k] = x
+        if k < len(path) - 1:
+            x, v = integrator(skill.step(k, partial(term, k)), x, v, dt)
     return path
 
 
@@ -95,8 +82,7 @@ class Agents:
     distance: float
     prediction: float = 0.0
     slowing: float = 0.0
-    stiffness: float = 25.0 * 25.0 / 4
-    damping: float = 25.0
+    system: SpringDamper = CRITICAL
     decay: float = 0.7
 
     def rollout(
@@ -109,15 +95,15 @@ class Agents:
         duration: float,
     ) -> Array:
         """Paths (n, 2, d) for tau = 1 s; forcing(s): (2, d) of both agents; push(t): added to their dv/dt, (2, d)."""
+        goals = np.asarray(goals, dtype=float)
         x, v, s = np.array(starts, float), np.zeros_like(np.asarray(starts, float)), np.ones(2)
         previous = self._pull(x)
         path = [x]
         for k in range(round(duration / dt)):
             pull = self._pull(x)
             forces = np.stack([forcing(s[i])[i] for i in (0, 1)])
-            rate = self.prediction * (pull - previous) / dt
-            v = v + dt * (self.stiffness * (goals - x) - self.damping * v + forces + rate + push(k * dt))
-            x = x + dt * (v + pull)
+            forces = forces + self.prediction * (pull - previous) / dt + push(k * dt)
+            x, v = semi_implicit(Step(self.system, goals, 1.0, (forces, forces), drift=pull), x, v, dt)
             s = s - dt * self.decay * s / (1 + self.slowing * (pull**2).sum(1) / max(self.coupling, 1e-9) ** 2)
             previous = pull
             path.append(x)
@@ -151,6 +137,6 @@ class SurfaceFollower:
             error = force - self.set_force
             total += error * dt
             correction = np.array([0.0, self.proportional * error + self.integral * total])
-            v = v + dt * (skill.acceleration(skill.forcing[k], x, v) + correction / skill.time_constant)
-            x = x + dt * v / skill.time_constant
+            forcing = skill.forcing[k] + correction
+            x, v = semi_implicit(Step(skill.system, skill.goal, skill.time_constant, (forcing, forcing)), x, v, dt)
         return np.array(path), np.array(forces)

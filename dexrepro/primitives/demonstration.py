@@ -7,12 +7,12 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import sparse
 from scipy.interpolate import BSpline, make_interp_spline
 from scipy.sparse.linalg import splu
 
-Array = NDArray[Any]
+from dexrepro.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,12 @@ class Demonstration:
 
     @property
     def start(self) -> Array:
+        """First position (d,)."""
         return self.position[0]
 
     @property
     def goal(self) -> Array:
+        """Last position (d,)."""
         return self.position[-1]
 
     @property
@@ -60,7 +62,7 @@ class Demonstration:
         return np.ptp(self.position, axis=0)
 
     def with_rest(self, fraction: float) -> Demonstration:
-        """The same, held at its goal for ``fraction`` of its duration afterwards."""
+        """The same, held at its goal for ``fraction`` of its duration [s] afterwards."""
         count = round(fraction * (len(self.time) - 1))
         later = self.time[-1] + (self.time[1] - self.time[0]) * np.arange(1, count + 1)
         still = np.zeros((count, self.position.shape[1]))

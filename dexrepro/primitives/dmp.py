@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from dexrepro.arrays import Array, Mask
 
 from .demonstration import Demonstration
 from .kernels import FeatureMap, GaussianKernels, TruncatedKernels, phase
 from .regression import least_squares, locally_weighted, locally_weighted_affine
-from .spring_damper import SpringDamper
-
-Array = NDArray[Any]
+from .transformation import SpringDamper
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Scaling:
     Eq. (5.1) has A = g - x0 on every axis, which blows up where start and goal nearly agree.
     """
 
-    follows_goal: NDArray[np.bool_]
+    follows_goal: Mask
     size: Array
 
     @classmethod
@@ -160,7 +160,7 @@ class DMP:
         beforehand).
         """
         tau = self.time_constant if time_constant is None else time_constant
-        time = step * np.arange(round((tau if horizon is None else horizon) / step) + 1)
+        time = step * np.arange(round((tau if horizon is None else horizon) / step) + 1, dtype=float)
         start = self.start if start is None else np.asarray(start, dtype=float)
         goal = self.goal if goal is None else np.asarray(goal, dtype=float)
         f = self.features.features(phase(time, tau, self.decay)) @ self.weights
@@ -173,7 +173,7 @@ class DMP:
     def propagator(self, step: float, horizon: float | None = None) -> Propagator:
         """Responses on a grid, to be kept for many rollouts (goals, starts, weights) that begin at rest."""
         tau = self.time_constant
-        time = step * np.arange(round((tau if horizon is None else horizon) / step) + 1)
+        time = step * np.arange(round((tau if horizon is None else horizon) / step) + 1, dtype=float)
         psi = self.features.features(phase(time, tau, self.decay))
         forcing = np.concatenate([psi, np.zeros((len(time), 1))], axis=1)
         position, velocity = self.system.solve(forcing, step / tau, np.append(np.zeros(psi.shape[1]), 1.0))
@@ -203,6 +203,7 @@ class OnlineDMP:
 
     @property
     def time(self) -> float:
+        """Time that has passed [s]."""
         return self.index * self.dt
 
     @property

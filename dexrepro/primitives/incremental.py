@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple, TypedDict, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import expit
+
+from dexrepro.arrays import Array
 
 from .demonstration import Demonstration
 from .dmp import DMP, forcing_target
 from .kernels import FeatureMap, GaussianKernels, phase
 from .pseudo_inverse import extended_pseudo_inverse
 from .regression import least_squares
-
-Array = NDArray[Any]
 
 
 class Blocks(NamedTuple):
@@ -68,7 +67,7 @@ class ExtendedKernels:
         return cls(kernels, weights, biases, kernels if base is None else base)
 
     def first(self, count: int) -> ExtendedKernels:
-        """The same with the first ``count`` random features alone."""
+        """The same with the first ``count`` of its m random features alone."""
         return replace(self, input_weights=self.input_weights[:, :count], biases=self.biases[:count])
 
     @property
@@ -78,10 +77,11 @@ class ExtendedKernels:
 
     @property
     def count(self) -> int:
+        """Number of features p: those of the old skill, its copies and the new ones."""
         return self.base.count + self.kernels.count + self.added
 
     def blocks(self, phases: Array) -> Blocks:
-        """Psi, 1/Gamma and Upsilon; Gamma itself would overflow where every kernel underflows."""
+        """Psi (N, n), 1/Gamma (N, 1) and Upsilon (N, m); Gamma itself would overflow where every kernel underflows."""
         activations = self.kernels.activations(phases)
         eta = expit(activations @ self.input_weights + self.biases)
         old, new = activations.sum(axis=1, keepdims=True), eta.sum(axis=1, keepdims=True)
@@ -92,6 +92,16 @@ class ExtendedKernels:
     def features(self, phases: Array) -> Array:
         """[old features | (1/Gamma - 1) Psi | (1 - 1/Gamma) Upsilon], (N, count)."""
         return np.concatenate([self.base.features(phases), self.blocks(phases).change], axis=1)
+
+
+class Options(TypedDict, total=False):
+    """What :func:`extend_styles` takes beside primitive, features and demonstrations."""
+
+    relearn_old: bool
+    rest: float
+    rcond: float
+    ridge: float
+    update: Literal["exact", "printed_start", "row_wise", "scalar"]
 
 
 def extend_styles(
@@ -145,7 +155,7 @@ def lemma_weights(
     """
     factor = 1 / (blocks.share - 1)
     scaled = (factor.mean() if reading == "scalar" else factor) * target
-    inverse = np.linalg.pinv(blocks.kernels, rcond=rcond)
+    inverse = np.asarray(np.linalg.pinv(blocks.kernels, rcond=rcond), float)
     start = inverse @ (target if reading == "printed_start" else scaled)
     extended = extended_pseudo_inverse(blocks.kernels, inverse, -blocks.enhancement)
     return np.concatenate([start - inverse @ scaled, np.zeros((blocks.enhancement.shape[1], target.shape[1]))]) + (
@@ -153,7 +163,7 @@ def lemma_weights(
     )
 
 
-def extend(primitive: DMP, features: ExtendedKernels, demonstration: Demonstration, **options: Any) -> DMP:
+def extend(primitive: DMP, features: ExtendedKernels, demonstration: Demonstration, **options: Unpack[Options]) -> DMP:
     """Learn one new skill from an old one, Eqs. (5.19)-(5.24); options as for ``extend_styles``."""
     return extend_styles(primitive, features, [demonstration], **options)[0]
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[Any]
+from dexrepro.arrays import Array
 
 
 def phase(time: ArrayLike, time_constant: float, decay: float) -> Array:
@@ -20,9 +20,11 @@ class FeatureMap(Protocol):
     """Anything that a forcing term can be linear in: phases (N,) to features (..., N, p)."""
 
     @property
-    def count(self) -> int: ...
+    def count(self) -> int:
+        """Number of features p."""
 
-    def features(self, phases: Array) -> Array: ...
+    def features(self, phases: Array) -> Array:
+        """Features (..., N, p) at phases (N,)."""
 
 
 @dataclass(frozen=True)

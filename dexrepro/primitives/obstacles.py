@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[Any]
+from dexrepro.arrays import Array, Mask
 
 
 @dataclass(frozen=True)
@@ -20,7 +19,7 @@ class Polygon:
 
     @classmethod
     def rectangle(cls, x: ArrayLike, y: ArrayLike) -> Polygon:
-        """Axis-aligned rectangle over the intervals x and y."""
+        """Axis-aligned rectangle over the intervals x and y, (low, high) each, in the unit of the path."""
         (left, right), (bottom, top) = np.asarray(x, float), np.asarray(y, float)
         return cls(np.array([[left, bottom], [right, bottom], [right, top], [left, top]]))
 
@@ -44,7 +43,7 @@ class Polygon:
         gap = np.linalg.norm(self.closest(points) - points, axis=-1)
         return np.where(self.contains(points), -gap, gap)
 
-    def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
+    def contains(self, points: ArrayLike) -> Mask:
         """Whether points of shape (..., 2) lie inside (ray casting)."""
         p = np.asanyarray(points, float)[..., None, :]
         a, b = self.vertices, np.roll(self.vertices, -1, axis=-2)

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[Any]
+from dexrepro.arrays import Array
 
 
 def extended_pseudo_inverse(matrix: Array, inverse: Array, columns: Array, tolerance: float = 1e-9) -> Array:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from dexrepro.arrays import Array
 
 from .incremental import ExtendedKernels
 from .regression import least_squares
-
-Array = NDArray[np.float64]
 
 
 def ridge_weights(features: Array, target: Array, ridge: float) -> Array:

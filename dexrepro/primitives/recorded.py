@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import glob
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-Array = NDArray[Any]
+from dexrepro.arrays import Array
+
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 COLUMNS = ("time", "x", "y", "z")
 FEWEST = 8

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
+from dexrepro.arrays import Array
 from dexrepro.primitives.constrained import Reference
-
-Array = NDArray[Any]
 
 
 def arc(centre: ArrayLike, radius: float, start: float, end: float, count: int = 25) -> Array:

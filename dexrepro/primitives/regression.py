@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
+
+from dexrepro.arrays import Array
 
 from .kernels import GaussianKernels, TruncatedKernels
-
-Array = NDArray[Any]
 
 
 def least_squares(features: Array, target: Array, rcond: float = 1e-10, ridge: float = 0.0) -> Array:
@@ -21,9 +18,9 @@ def least_squares(features: Array, target: Array, rcond: float = 1e-10, ridge: f
     if ridge > 0:
         gram = np.swapaxes(features, -1, -2) @ features
         gram[..., range(gram.shape[-1]), range(gram.shape[-1])] += ridge
-        return np.linalg.solve(gram, np.swapaxes(features, -1, -2) @ target)
+        return np.asarray(np.linalg.solve(gram, np.swapaxes(features, -1, -2) @ target), float)
     if features.ndim == 2 and target.ndim == 2:
-        return np.linalg.lstsq(features, target, rcond=rcond)[0]
+        return np.asarray(np.linalg.lstsq(features, target, rcond=rcond)[0], float)
     batch = np.broadcast_shapes(features.shape[:-2], target.shape[:-2])
     flat = np.broadcast_to(features, batch + features.shape[-2:]).reshape(-1, *features.shape[-2:])
     wanted = np.broadcast_to(target, batch + target.shape[-2:]).reshape(-1, *target.shape[-2:])

@@ -16,6 +16,7 @@ from dexrepro import chapters
 from dexrepro.config import InputError, nearest
 from dexrepro.experiment import Config, Experiment, Film, Recording
 from dexrepro.physics import rendering
+from dexrepro.physics.world import World
 from dexrepro.report import style
 from dexrepro.report.damage import check_result
 from dexrepro.runner import live
@@ -40,7 +41,7 @@ def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
     check_result(folder, "config.yaml", series=True)
     run = read_json(folder / "run.json")
     experiment = chapters.load(run["chapter"]).experiment(run["experiment"])
-    if not experiment.has("scene"):
+    if not experiment.function("scene"):
         raise InputError(f"experiment '{experiment.name}' has no scene to render")
     if kind == "mp4" and not shutil.which("ffmpeg"):
         raise InputError("format = mp4 is not allowed: it needs the program ffmpeg; use format=gif")
@@ -87,8 +88,9 @@ def _frames(experiment: Experiment, config: Config, recording: Recording) -> Ite
     film = experiment.film
     camera = film.camera if film else rendering.Camera()
     font = ImageFont.load_default(15)
+    World.meshes = True
     with experiment.simulation.scene(config) as world:
-        if experiment.has("stage"):
+        if experiment.function("stage"):
             recording = experiment.simulation.stage(world, recording, config)
         start, end = (film.span if film else None) or (recording.time[0], recording.time[-1])
         shown = recording.time[recording.between(start, end)]

@@ -1,44 +1,152 @@
-"""An index from the book's equations to the code, read off the docstrings: "Eq. (2.32)" -> function and source line."""
+"""An index from the book's equations to the lines that implement or discuss them: "(2.32)" -> code, parameter, erratum.
+
+An equation is mentioned by its number in parentheses, in a docstring, a comment or any other text of the code, or
+in the comment of a configuration; "(5.46) to (5.48)" and "(2.1)-(2.4)" mention all of the range.
+"""
 
 from __future__ import annotations
 
 import ast
+import io
 import re
+import textwrap
+import tokenize
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
-_EQUATIONS = re.compile(r"Eqs?\.\s*((?:\(\d+\.\d+[a-z]?\)(?:\s*(?:,|and|to|-|–)\s*)?)+)")
-_NUMBER = re.compile(r"\((\d+)\.(\d+)([a-z]?)\)")
+import yaml
 
+from dexrepro.config import config_dir
 
-def index(root: Path | None = None) -> list[dict[str, Any]]:
-    """Entries {equation, name, file, line}, in the order of the book. root: the package's folder."""
-    root = root or Path(__file__).parent.parent
-    found = [entry for path in sorted(root.rglob("*.py")) for entry in _of_file(path, root)]
-    return [entry for _, entry in sorted(found, key=lambda pair: (pair[0], pair[1]["file"], pair[1]["line"]))]
-
-
-def _of_file(path: Path, root: Path) -> Iterator[tuple[tuple[int, int, str], dict[str, Any]]]:
-    file = str(path.relative_to(root.parent))
-    tree = ast.parse(path.read_text())
-    for node, name in _documented(tree, path.stem):
-        seen = set()
-        for group in _EQUATIONS.finditer(ast.get_docstring(node) or ""):
-            for chapter, number, letter in _NUMBER.findall(group[1]):
-                key = (int(chapter), int(number), letter)
-                if key not in seen:
-                    seen.add(key)
-                    line = getattr(node, "lineno", 1)
-                    yield key, {"equation": f"{chapter}.{number}{letter}", "name": name, "file": file, "line": line}
+_NUMBER = r"\(([1-9]\d?)\.([1-9]\d{0,2})([a-z]?)\)"
+_MENTION = re.compile(rf"{_NUMBER}(?:\s*(?:-|\u2013|\bto\b)\s*{_NUMBER})?")
+_LONGEST = 60  # equations a range may hold; more is no range
+_BREAK = "\0"  # stands where one text ends and the next begins
+_SENTENCE = re.compile(rf"(?<!Eq)(?<!Eqs)[.;]\s|\n *\n|{_BREAK}")
+_IDENTIFIER = re.compile(r"([CE])\d+\.\w+$")
+KINDS = {"code": "implements or uses it", "parameter": "parameter", "erratum": "erratum", "claim": "claim"}
 
 
-def _documented(tree: ast.Module, name: str) -> Iterator[tuple[Any, str]]:
-    yield tree, name
-    for node in tree.body:
-        if isinstance(node, ast.ClassDef | ast.FunctionDef):
-            yield node, node.name
-        if isinstance(node, ast.ClassDef):
-            for method in node.body:
-                if isinstance(method, ast.FunctionDef):
-                    yield method, f"{node.name}.{method.name}"
+class Mention(NamedTuple):
+    """One equation at one line. kind: one of KINDS; name: a function, class, parameter, erratum or claim."""
+
+    equation: str
+    kind: str
+    name: str
+    path: Path
+    line: int
+    text: str
+
+
+def index(*roots: Path) -> list[Mention]:
+    """Every mention, in the order of the book, code first. roots: folders read; the package and its configuration."""
+    found = {mention for root in roots or _own() for path in _files(root) for mention in _of_file(path)}
+    return sorted(found, key=lambda m: (*place(m.equation), list(KINDS).index(m.kind), m.path, m.line))
+
+
+def _own() -> set[Path]:
+    package = Path(__file__).parent.parent
+    return {package} if config_dir().is_relative_to(package) else {package, config_dir()}
+
+
+def _files(root: Path) -> Iterator[Path]:
+    yield from root.rglob("*.py")
+    yield from root.rglob("*.yaml")
+
+
+def _of_file(path: Path) -> Iterator[Mention]:
+    source = path.read_text()
+    text, homes = (_prose(source), _definitions(source, path.stem)) if path.suffix == ".py" else _configuration(source)
+    for match in _MENTION.finditer(text):
+        line = text.count("\n", 0, match.start()) + 1
+        home = homes[line - 1]
+        given = _IDENTIFIER.match(home)
+        kind = {"C": "claim", "E": "erratum"}[given[1]] if given else "code" if path.suffix == ".py" else "parameter"
+        for equation in _expanded(match):
+            yield Mention(equation, kind, home, path, line, _sentence(text, match))
+
+
+def _expanded(match: re.Match[str]) -> list[str]:
+    chapter, first, letter, chapter_2, last, letter_2 = match.groups()
+    ends = [f"{chapter}.{first}{letter}", *([f"{chapter_2}.{last}{letter_2}"] if last else [])]
+    if last and chapter == chapter_2 and int(first) < int(last) < int(first) + _LONGEST:
+        return [ends[0], *(f"{chapter}.{number}" for number in range(int(first) + 1, int(last))), ends[1]]
+    return ends
+
+
+def place(equation: str) -> tuple[int, int, str]:
+    """Where an equation's number stands in the book: "2.9" comes before "2.10"."""
+    chapter, number, letter = re.match(r"(\d+)\.(\d+)(\w?)", equation).groups()  # type: ignore[union-attr]
+    return int(chapter), int(number), letter
+
+
+def _sentence(text: str, match: re.Match[str]) -> str:
+    """The sentence that holds the mention."""
+    start = max((m.end() for m in _SENTENCE.finditer(text, 0, match.start())), default=0)
+    end = _SENTENCE.search(text, match.end())
+    return textwrap.shorten(text[start : end.start() if end else None], 240, placeholder=" \u2026")
+
+
+# --------------------------------------------------------------------------------------- Python: texts and their homes
+
+
+def _prose(source: str) -> str:
+    """The source with everything but the text of strings and comments turned into blanks, line by line."""
+    lines = [[" "] * (len(line) + 1) for line in source.split("\n")]
+    kinds = {tokenize.STRING, tokenize.COMMENT, getattr(tokenize, "FSTRING_MIDDLE", tokenize.STRING)}
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        row, column = token.start
+        if token.type in kinds:
+            body = re.sub(r"^\w*['\"]+|['\"]+$|^#+", lambda quotes: " " * len(quotes[0]), token.string)
+            for offset, part in enumerate(body.split("\n")):
+                start = 0 if offset else column
+                lines[row - 1 + offset][start : start + len(part)] = part
+        separate = token.string in (",", ":") or token.type == tokenize.NEWLINE
+        if separate or (token.type == tokenize.COMMENT and token.line[:column].strip()):
+            lines[row - 1][column] = _BREAK
+    return "\n".join(map("".join, lines)) + "\n"
+
+
+def _definitions(source: str, module: str) -> list[str]:
+    """For each line what it belongs to: a claim's or erratum's id, a method as Class.method, or the module."""
+    homes = [module] * (source.count("\n") + 2)
+    _fill(ast.parse(source), "", homes)
+    return homes
+
+
+def _fill(node: ast.AST, outer: str, homes: list[str]) -> None:
+    for child in ast.iter_child_nodes(node):
+        name = outer
+        if isinstance(child, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            name = f"{outer}.{child.name}" if outer else child.name
+        elif isinstance(child, ast.Call) and child.args and isinstance(child.args[0], ast.Constant):
+            given = str(child.args[0].value)
+            name = given if _IDENTIFIER.match(given) else outer
+        if name != outer:
+            first, last = child.lineno, child.end_lineno or child.lineno  # type: ignore[attr-defined]
+            homes[first - 1 : last] = [name] * (last - first + 1)
+        _fill(child, name, homes)
+
+
+# ---------------------------------------------------------------------------------------------- YAML: comments and keys
+
+
+def _configuration(source: str) -> tuple[str, list[str]]:
+    """The comments of a configuration, and each line's key; a comment on a line of its own has the next one's."""
+    homes = [""] * (source.count("\n") + 2)
+    package = re.search(r"^# @package (?!_global_)(\S+)", source)
+    _keys(yaml.compose(source), package[1] if package else "", homes)
+    for line in range(len(homes) - 2, -1, -1):
+        homes[line] = homes[line] or homes[line + 1]
+    comments = (re.match(r"(\s*)#(.*)|(.*?)(?: #(.*))?$", line) for line in source.splitlines())
+    return "".join(f"{c[2] or ''}\n" if c[2] else f"{_BREAK}{c[4] or ''}\n" for c in comments if c), homes
+
+
+def _keys(node: yaml.Node | None, outer: str, homes: list[str]) -> None:
+    if isinstance(node, yaml.MappingNode):
+        for key, value in node.value:
+            name = f"{outer}.{key.value}" if outer else key.value
+            if not homes[key.start_mark.line]:
+                homes[key.start_mark.line] = name
+            _keys(value, name, homes)

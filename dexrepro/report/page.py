@@ -27,6 +27,7 @@ from dexrepro.experiment import (
 )
 from dexrepro.report import equations, parameters, studies, symbols
 from dexrepro.report.damage import check_result
+from dexrepro.report.sources import Sources
 from dexrepro.report.style import file_stem
 from dexrepro.storage import read_json, whole_folder
 
@@ -56,22 +57,23 @@ class _Report:
         self.templates = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True)
         self.templates.filters["breakable"] = _breakable
         self.search: list[dict[str, str]] = []
+        self.sources = Sources(folder)
         self.studies = {item["experiment"]: item for item in study.stored(results)}
 
     def write(self) -> None:
         book = [self._chapter(number) for number in chapters.numbers()]
         book = [chapter for chapter in book if chapter["experiments"]]
-        index = equations.index()
-        for entry in index:
-            text = f"Eq. ({entry['equation']}): {entry['name']}, {entry['file']}:{entry['line']}"
-            self._searchable(text, f"equations.html#eq-{entry['equation']}")
+        index = self._equations(book)
         self._search_parameters(book)
-        common: dict[str, Any] = {"chapters": book, "provenance": self._provenance(book)}
+        common: dict[str, Any] = {"about": chapters.book(), "chapters": book, "provenance": self._provenance(book)}
         self._page("index", here="index", **common, **self._front(book))
         for chapter in book:
             self._page(f"chapter{chapter['number']}", "chapter", here=chapter["number"], chapter=chapter, **common)
         self._page("symbols", here="symbols", **common)
         self._page("equations", here="equations", equations=index, **common)
+        (self.folder / "source").mkdir()
+        for page in self.sources.pages():
+            self._page(page["target"].removesuffix(".html"), "source", revision=common["provenance"], **page)
         for name in ("style.css", "app.js"):
             shutil.copyfile(Path(__file__).parent / "templates" / name, self.folder / name)
         data = json.dumps(self.search, separators=(",", ":")).replace("<", "\\u003c")
@@ -83,6 +85,26 @@ class _Report:
 
     def _searchable(self, text: str, to: str) -> None:
         self.search.append({"text": text, "to": to})
+
+    def _equations(self, book: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        """For each equation its mentions: ``code``, ``parameter``, and ``named``, the errata and claims."""
+        shown = {item["id"]: f"chapter{c['number']}.html#{item['id']}" for c in book for item in _identified(c)}
+        rows: dict[str, dict[str, Any]] = {}
+        for mention in equations.index():
+            link = self.sources.link(mention.path, mention.line)
+            entry = {**mention._asdict(), **link, "to": shown.get(mention.name, link["to"])}
+            row = rows.setdefault(
+                mention.equation, {"equation": mention.equation, "code": [], "parameter": [], "named": {}}
+            )
+            if mention.kind in ("erratum", "claim"):
+                row["named"].setdefault(mention.name, entry)
+            else:
+                row[mention.kind].append(entry)
+        for row in rows.values():
+            row["named"] = list(row["named"].values())
+            words = ", ".join(dict.fromkeys(m["name"] for m in [*row["code"], *row["named"]]))
+            self._searchable(f"Eq. ({row['equation']}): {words}", f"equations.html#eq-{row['equation']}")
+        return list(rows.values())
 
     def _search_parameters(self, book: list[dict[str, Any]]) -> None:
         for chapter in book:
@@ -287,6 +309,12 @@ def _score(chapter: Mapping[str, Any]) -> dict[str, Any]:
         "own": (held, len(own)),
         "ours": f"{held} of {len(own)}",
     }
+
+
+def _identified(chapter: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Claims and errata that a chapter's page shows."""
+    claims = [claim for experiment in chapter["experiments"] for claim in experiment["claims"]]
+    return [*claims, *chapter["untestable"], *chapter["errata"]]
 
 
 def _in_book_order(chapter: Mapping[str, Any]) -> list[dict[str, Any]]:

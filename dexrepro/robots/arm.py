@@ -13,8 +13,10 @@ from itertools import pairwise
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
+
+from dexrepro.arrays import Array
 
 Vector = tuple[float, float, float]
 Colour = tuple[float, float, float, float]
@@ -34,7 +36,7 @@ class Pose:
     rpy: Vector = (0.0, 0.0, 0.0)
 
     @cached_property
-    def matrix(self) -> NDArray[np.float64]:
+    def matrix(self) -> Array:
         """Homogeneous transform, shape (4, 4), that takes child coordinates to the parent frame."""
         result = np.eye(4)
         result[:3, :3] = Rotation.from_euler("xyz", self.rpy).as_matrix()
@@ -50,7 +52,13 @@ class Pose:
     def of(cls, matrix: ArrayLike) -> Pose:
         """Pose of a homogeneous transform of shape (4, 4)."""
         m = np.asarray(matrix, dtype=float)
-        return cls(tuple(m[:3, 3].tolist()), tuple(Rotation.from_matrix(m[:3, :3]).as_euler("xyz").tolist()))
+        cosine = math.hypot(m[0, 0], m[1, 0])
+        if cosine > 1e-6:
+            return cls(tuple(m[:3, 3].tolist()), tuple(Rotation.from_matrix(m[:3, :3]).as_euler("xyz").tolist()))
+        yaw = math.atan2(m[1, 0], m[0, 0])  # roll and yaw turn about one axis: any yaw will do, roll makes up for it
+        c, s = math.cos(yaw), math.sin(yaw)
+        roll = math.atan2(s * m[0, 2] - c * m[1, 2], c * m[1, 1] - s * m[0, 1])
+        return cls(tuple(m[:3, 3].tolist()), (roll, math.atan2(-m[2, 0], cosine), yaw))
 
     def __matmul__(self, other: Pose) -> Pose:
         return Pose.of(self.matrix @ other.matrix)
@@ -61,7 +69,7 @@ class Shape:
     """Geometry in a link frame, seen by contacts and cameras.
 
     kind: "box" with size (x, y, z) [m]; "sphere" with (radius,); "capsule" and "cylinder" with (radius, length) along
-    the local z axis, the capsule's length without its caps.
+    the local z axis, the capsule's length without its caps; "mesh" with its scale (x, y, z), seen in pictures alone.
     """
 
     kind: str
@@ -69,6 +77,7 @@ class Shape:
     pose: Pose = Pose()
     colour: Colour = GREY
     collides: bool = True
+    mesh: str = ""
 
     @classmethod
     def between(cls, start: Sequence[float], end: Sequence[float], radius: float, colour: Colour = GREY) -> Shape:
@@ -79,17 +88,26 @@ class Shape:
         middle = tuple(((a + b) / 2).tolist())
         return cls("capsule", (radius, math.hypot(x, y, z)), Pose(middle, (0.0, pitch, yaw)), colour)
 
-    def urdf(self) -> str:
-        names = {"box": "size", "sphere": "radius"}
+    def urdf(self, seen: bool = True) -> str:
+        """Its ``<visual>``, if it is to be seen, and ``<collision>``, where it collides, of a URDF link."""
+        names = {"box": "size", "sphere": "radius", "mesh": "scale"}
         if self.kind in names:
             attributes = f"{names[self.kind]}={quoteattr(_numbers(self.size))}"
         else:
             attributes = f"radius='{self.size[0]!r}' length='{self.size[1]!r}'"
+        if self.mesh:
+            attributes += f" filename={quoteattr(self.mesh)}"
         body = f"{_origin(self.pose)}<geometry><{self.kind} {attributes}/></geometry>"
         name = f"c{hash(self.colour) & 0xFFFFFFFF:x}"
         paint = f"<material name='{name}'><color rgba={quoteattr(_numbers(self.colour))}/></material>"
         collision = f"<collision>{body}</collision>" if self.collides else ""
-        return f"<visual>{body}{paint}</visual>{collision}"
+        return (f"<visual>{body}{paint}</visual>" if seen else "") + collision
+
+
+def _shapes(shapes: Sequence[Shape], meshes: bool) -> str:
+    """Shapes as URDF text; where meshes are wanted and there are any, they are seen in the place of the others."""
+    meshes = meshes and any(shape.mesh for shape in shapes)
+    return "".join(shape.urdf(seen=bool(shape.mesh) == meshes) for shape in shapes)
 
 
 @dataclass(frozen=True)
@@ -115,7 +133,8 @@ class Link:
             )
 
     @property
-    def inertia_matrix(self) -> NDArray[np.float64]:
+    def inertia_matrix(self) -> Array:
+        """Inertia (3, 3) [kg m^2] about the centre of mass, along the axes of the link frame."""
         xx, xy, xz, yy, yz, zz = self.inertia
         return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
@@ -124,11 +143,12 @@ class Link:
         scaled = _scaled(self.inertia, factor)
         return replace(self, mass=factor * self.mass, inertia=scaled)
 
-    def urdf(self) -> str:
+    def urdf(self, meshes: bool = False) -> str:
+        """Its ``<link>`` of a URDF file; meshes: seen in the place of the other shapes, if it has some."""
         names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-        inertia = " ".join(f"{name}='{value!r}'" for name, value in zip(names, self.inertia, strict=True))
-        inertial = f"{_origin(Pose(self.com))}<mass value='{self.mass!r}'/><inertia {inertia}/>"
-        shapes = "".join(shape.urdf() for shape in self.shapes)
+        inertia = " ".join(f"{name}='{float(value)!r}'" for name, value in zip(names, self.inertia, strict=True))
+        inertial = f"{_origin(Pose(self.com))}<mass value='{float(self.mass)!r}'/><inertia {inertia}/>"
+        shapes = _shapes(self.shapes, meshes)
         return f"<link name={quoteattr(self.name)}><inertial>{inertial}</inertial>{shapes}</link>"
 
 
@@ -191,38 +211,38 @@ class Arm:
         return len(self.joints)
 
     @cached_property
-    def effort(self) -> NDArray[np.float64]:
+    def effort(self) -> Array:
         """Largest joint torques [N m], shape (n,)."""
         return np.array([joint.effort for joint in self.joints])
 
     @cached_property
-    def lower(self) -> NDArray[np.float64]:
+    def lower(self) -> Array:
         """Lower joint limits [rad], shape (n,)."""
         return np.array([joint.lower for joint in self.joints])
 
     @cached_property
-    def upper(self) -> NDArray[np.float64]:
+    def upper(self) -> Array:
         """Upper joint limits [rad], shape (n,)."""
         return np.array([joint.upper for joint in self.joints])
 
     @cached_property
-    def speed(self) -> NDArray[np.float64]:
+    def speed(self) -> Array:
         """Largest joint speeds [rad/s], shape (n,)."""
         return np.array([joint.velocity for joint in self.joints])
 
     @cached_property
-    def origins(self) -> tuple[NDArray[np.float64], ...]:
+    def origins(self) -> tuple[Array, ...]:
         """Transforms parent -> child at angle 0, (4, 4) each; the first one starts in the world frame."""
         first, *rest = (joint.origin.matrix for joint in self.joints)
         return (self.base.matrix @ first, *rest)
 
     @cached_property
-    def axes(self) -> NDArray[np.float64]:
+    def axes(self) -> Array:
         """Joint axes in the frames of their links, shape (n, 3)."""
         return np.array([joint.axis for joint in self.joints])
 
     @cached_property
-    def turns(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def turns(self) -> tuple[Array, Array, Array]:
         """O, O K and O K^2 of every joint, (n, 4, 4) each: its origin and the cross-product matrix of its axis.
 
         Turned by an angle q, the transform is O + sin(q) O K + (1 - cos(q)) O K^2 (Rodrigues' formula).
@@ -234,7 +254,7 @@ class Arm:
         return origins, origins @ cross, origins @ cross @ cross
 
     @cached_property
-    def tip(self) -> NDArray[np.float64]:
+    def tip(self) -> Array:
         """Transform of the end point (of the tool, if there is one) in the last moving link, (4, 4)."""
         transform = np.eye(4)
         for pose, _ in self.fixed:
@@ -253,7 +273,7 @@ class Arm:
         )
 
     def placed(self, base: Pose) -> Arm:
-        """The same arm with its base elsewhere."""
+        """The same arm with its base elsewhere in the world [m, rad]."""
         return replace(self, base=base)
 
     def scaled(self, factor: float) -> Arm:
@@ -274,9 +294,10 @@ class Arm:
         link = Link(tool.name, tool.mass, tool.com, tool.inertia, tool.shapes)
         return (*self.fixed, (self.end @ tool.mount, link))
 
-    def urdf(self) -> str:
+    def urdf(self, meshes: bool = False) -> str:
         """The arm as URDF text: root link "world", then one link for every body, all with explicit inertials.
 
+        meshes: seen in the place of the other shapes, where a body has some.
         One element a line: PyBullet breaks lines of more than 8 kB anywhere, even within a number.
         """
         hidden = self.tool.replaces if self.tool else ()
@@ -293,7 +314,7 @@ class Arm:
         base = tuple(replace(shape, pose=self.base @ shape.pose) for shape in self.base_shapes)
         links.insert(0, Link("world", 1.0, (0, 0, 0), (1, 0, 0, 1, 0, 1), base))
         joints = [joint(parent.name, child.name) for (joint, _), (parent, child) in zip(chain, pairwise(links))]
-        body = "".join([link.urdf() for link in links] + joints)
+        body = "".join([link.urdf(meshes) for link in links] + joints)
         return f"<robot name={quoteattr(self.name)}>{body}</robot>".replace("><", ">\n<")
 
 

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 import yaml
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
+from dexrepro.arrays import Array
 from dexrepro.robots.arm import Arm, Colour, Joint, Link, Pose, Shape, Tool
 
 RED: Colour = (0.70, 0.13, 0.13, 1.0)
@@ -22,7 +23,7 @@ MIRRORED = np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 
 
 @cache
-def data() -> dict[str, Any]:
+def _data() -> dict[str, Any]:
     """The maker's numbers, as in baxter.yaml (SI units)."""
     text = files("dexrepro.robots").joinpath("baxter.yaml").read_text(encoding="utf-8")
     result: dict[str, Any] = yaml.safe_load(text)
@@ -36,7 +37,7 @@ def baxter(side: str, tool: Tool | None = None, base: Pose = Pose(), mount: Pose
     The end frame is the gripper's end point, z along the approach direction. Torque limits 50, 100, 50, 50, 15, 15,
     15 N m. Rotor inertia, friction and the series springs of the real joints are not modelled.
     """
-    robot = data()
+    robot = _data()
     if mount is None:
         mount = _pose(robot["mount"][side])
     joints = tuple(
@@ -63,12 +64,12 @@ def baxter(side: str, tool: Tool | None = None, base: Pose = Pose(), mount: Pose
     )
 
 
-def posture(side: str) -> NDArray[np.float64]:
+def posture(side: str) -> Array:
     """Joint angles [rad], shape (7,), of the untucked arm; the left arm mirrors s0, e0, w0 and w2."""
-    return mirrored(data()["poses"]["untuck"], side)
+    return mirrored(_data()["poses"]["untuck"], side)
 
 
-def mirrored(right: Any, side: str = "left") -> NDArray[np.float64]:
+def mirrored(right: ArrayLike, side: str = "left") -> Array:
     """Angles for one side, shape (..., 7), from those of the right arm: the left arm mirrors s0, e0, w0 and w2."""
     angles = np.asarray(right, dtype=float)
     return angles * MIRRORED if side == "left" else angles

@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dposv
 
+from dexrepro.arrays import Array
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import PlanarTip, forward, jacobian, rotation_error
+from dexrepro.robots.kinematics import forward, jacobian
+from dexrepro.robots.planar import PlanarTip
+from dexrepro.robots.rotations import rotation_error, tilt
 
-Array = NDArray[np.float64]
 Place = Sequence[float] | Array
 TASKS = ("position", "pose", "axis")
 
@@ -20,9 +22,11 @@ TASKS = ("position", "pose", "axis")
 class Kinematics(Protocol):
     """Pose and Jacobian of one joint state, such as physics.model.RigidBodyModel offers."""
 
-    def forward(self, q: Array) -> tuple[Array, Array]: ...
+    def forward(self, q: Array) -> tuple[Array, Array]:
+        """Position (3,) [m] and rotation (3, 3) of the end point, world frame, at joint angles (n,) [rad]."""
 
-    def jacobian(self, q: Array) -> Array: ...
+    def jacobian(self, q: Array) -> Array:
+        """Geometric Jacobian (6, n): linear [m/rad] over angular rows, world frame."""
 
 
 class Unreachable(RuntimeError):
@@ -117,8 +121,8 @@ class InverseKinematics:
             rows = np.zeros((5, 6))
             rows[:3, :3] = np.eye(3)
             rows[3:, 3:] = turn.T[:2]
-            tilt = _axis_error(np.asarray(rotation, dtype=float)[:, 2], turn)
-            error = np.concatenate((offset, tilt))
+            lean = turn.T[:2] @ tilt(turn[:, 2], np.asarray(rotation, dtype=float)[:, 2])
+            error = np.concatenate((offset, lean))
         return rows @ full, error, rows
 
     def _rates(self, jacobian: Array, rate: Array, pull: Array | None) -> Array:
@@ -179,6 +183,8 @@ def solve(
     task: str = "position",
     rest: ArrayLike | None = None,
     rest_gain: float = 0.0,
+    gain: float = 1.0,
+    settle: int = 0,
     damping: float = 1e-2,
     tolerance: float = 1e-6,
     restarts: int = 20,
@@ -187,30 +193,42 @@ def solve(
     """Joint angles (n,) [rad] that put the end point (3,) [m], rotation (3, 3) where asked, within the joint limits.
 
     Starts from ``start`` (by default mid-range) and, where that fails, from random angles; the damping, at most
-    ``damping``, shrinks with the error. tolerance: of the norm of
-    the task error [m, rad]. Raises Unreachable with the best error found.
+    ``damping``, shrinks with the error. gain: share of a Newton step taken at once. settle: steps for which the pull
+    towards ``rest`` goes on in any case. tolerance: of the norm of the task error [m, rad].
+
+    Raises Unreachable with the best error found.
     """
     lower, upper = np.maximum(arm.lower, -np.pi), np.minimum(arm.upper, np.pi)
     rng = np.random.default_rng(seed)
-    follower = InverseKinematics(arm, task, 1.0, 1.0, damping, rest, rest_gain)
+    follower = InverseKinematics(arm, task, gain, 1.0, damping, rest, rest_gain)
     best = np.inf
     first = (lower + upper) / 2 if start is None else np.asarray(start, dtype=float)
     for attempt in range(restarts + 1):
         follower.damping = damping
         follower.reset(first if attempt == 0 else rng.uniform(lower, upper))
-        for iteration in range(200):
+        for iteration in range(settle + 200):
             before = follower.position
             follower(position, rotation)
             size = float(np.linalg.norm(follower.error))
             best = min(best, size)
             follower.damping = min(damping, size)
-            if size < tolerance:
+            if size < tolerance and iteration >= settle:
                 turns = 2 * np.pi * np.round(before / (2 * np.pi))
                 return before - np.where(np.isinf(arm.upper), turns, 0.0)
-            if iteration == 150:
+            if iteration == settle + 150:
                 follower.rest_gain = 0.0
         follower.rest_gain = rest_gain
     raise Unreachable(f"arm '{arm.name}' comes no closer than {best:.2g} to the {task} asked of it")
+
+
+def nearest(
+    arm: Arm, posture: ArrayLike, position: Place, rotation: ArrayLike | None = None, task: str = "pose"
+) -> Array:
+    """Of all joint angles (n,) [rad] that put the end point where asked, those nearest to a posture; see ``solve``.
+
+    Steps are small: whole ones can end in another branch, with wrist or elbow turned over.
+    """
+    return solve(arm, position, rotation, posture, task, posture, rest_gain=0.1, gain=0.3, settle=200)
 
 
 class _Description:
@@ -224,13 +242,3 @@ class _Description:
 
     def jacobian(self, q: Array) -> Array:
         return jacobian(self._arm, q)
-
-
-def _axis_error(wanted: Array, turn: Array) -> Array:
-    """The two components, along the end point's x and y, of the rotation vector that brings its z axis to wanted."""
-    axis = np.cross(turn[:, 2], wanted)
-    sine, cosine = float(np.linalg.norm(axis)), float(turn[:, 2] @ wanted)
-    if sine < 1e-9:
-        # Aligned, or exactly opposed: then any axis across will do.
-        return np.array((0.0 if cosine > 0 else np.pi, 0.0))
-    return turn.T[:2] @ axis * (np.arctan2(sine, cosine) / sine)

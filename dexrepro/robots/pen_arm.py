@@ -1,7 +1,10 @@
-"""A desktop arm that writes and carries small cubes: a turret and two pitching links."""
+"""A desktop arm that writes and carries small cubes: a turret and two pitching links; description and closed forms."""
 
 from __future__ import annotations
 
+import numpy as np
+
+from dexrepro.arrays import Array
 from dexrepro.robots.arm import Arm, Colour, Joint, Link, Pose, Shape, Tool
 
 WHITE: Colour = (0.85, 0.85, 0.88, 1.0)
@@ -56,3 +59,26 @@ def gripper(mass: float = 0.060, moment: float = 2e-5) -> Tool:
     """A small gripper whose centre of mass is the end point. mass [kg], moment of inertia about any axis [kg m^2]."""
     jaws = tuple(Shape("box", (0.02, 0.004, 0.02), Pose((0.01, side, 0.0)), DARK) for side in (-0.012, 0.012))
     return Tool("gripper", mass=mass, inertia=(moment, 0.0, 0.0, moment, 0.0, moment), shapes=jaws)
+
+
+def pen_arm_tip(angles: Array) -> Array:
+    """Tip positions (..., 3) [m] in the frame of the arm's base for yaw, shoulder and elbow (..., 3) [rad]."""
+    yaw, shoulder, elbow = np.moveaxis(angles, -1, 0)
+    reach = LENGTH * (np.cos(shoulder) + np.cos(shoulder + elbow))
+    height = LENGTH * (np.sin(shoulder) + np.sin(shoulder + elbow))
+    return np.stack([reach * np.cos(yaw), reach * np.sin(yaw), height], axis=-1)
+
+
+def pen_arm_angles(tip: Array) -> Array:
+    """Yaw, shoulder and elbow (..., 3) [rad], elbow up, for tip positions (..., 3) [m] in the frame of the arm's base.
+
+    Raises ValueError where a position is out of reach.
+    """
+    x, y, z = np.moveaxis(tip, -1, 0)
+    reach = np.hypot(x, y)
+    cosine = (reach**2 + z**2 - 2 * LENGTH**2) / (2 * LENGTH**2)
+    if np.any(np.abs(cosine) > 1):
+        raise ValueError(f"a tip position is out of the arm's reach of {2 * LENGTH:g} m")
+    elbow = -np.arccos(cosine)
+    shoulder = np.arctan2(z, reach) - np.arctan2(np.sin(elbow), 1 + np.cos(elbow))
+    return np.stack([np.arctan2(y, x), shoulder, elbow], axis=-1)

@@ -2,70 +2,161 @@
 
 from __future__ import annotations
 
+import difflib
 import math
+import re
+import warnings
 import xml.etree.ElementTree as xml
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from xml.parsers import expat
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from dexrepro.arrays import Array
 from dexrepro.robots.arm import GREY, Arm, Joint, Link, Pose, Shape
+from dexrepro.text import decoded
 
-Array = NDArray[np.float64]
 TURNING = ("revolute", "continuous")
+FOREIGN = {"mujoco": "an MJCF file of MuJoCo", "sdf": "an SDF file of Gazebo", "COLLADA": "a COLLADA mesh"}
+MESHES = (".stl", ".obj", ".dae")  # what the engine reads
+ROUNDING = 0.05
+"""How far an inertia may be from a rigid body's and still be read: what its largest principal moment exceeds the sum of
+the others by, or what its smallest is below zero, as a share of the largest. Makers' rounding stays below."""
 
 
-def from_urdf(path: str, end: str, base: Sequence[float] = (0.0, 0.0, 0.0)) -> Arm:
+def from_urdf(
+    path: str,
+    end: str,
+    base: Sequence[float] = (0.0, 0.0, 0.0),
+    root: str | None = None,
+    packages: Mapping[str, str] | None = None,
+) -> Arm:
     """The arm that a URDF file describes, up to the origin of the link ``end``, its end point.
 
-    base: (x, y, z) or (x, y, z, roll, pitch, yaw) of the root link in the world [m, rad]. Links behind fixed joints
-    count to the body that carries them; joints off the chain stand still at 0. Boxes, spheres and cylinders are seen,
-    and touched if they are collision shapes; meshes are neither. Raises ValueError with one sentence where the file
-    cannot be used.
+    base: (x, y, z) or (x, y, z, roll, pitch, yaw) of the root link in the world [m, rad]. root: the link that stands
+    in the world, by default the file's own root. packages: folders of the ROS packages that meshes are named by, where
+    they are not above the file.
+
+    Links behind fixed joints count to the body that carries them; joints off the chain stand still at 0. Boxes, spheres
+    and cylinders are seen, and touched if they are collision shapes; visual meshes whose file is there are seen in
+    pictures and touch nothing. An inertia within :data:`ROUNDING` of a rigid body's becomes one.
+    Raises ValueError with one sentence where the file cannot be used; warns with one where it was mended.
     """
-    if not Path(path).is_file():
-        raise ValueError(f"there is no URDF file '{path}'")
     try:
-        robot = xml.parse(path).getroot()
-    except xml.ParseError as error:
-        raise ValueError(f"'{path}' is no XML file: {error}") from None
-    links = {_name(node): node for node in robot.iter("link")}
-    into = {_name(node.find("child"), "link"): node for node in robot.iter("joint") if node.find("child") is not None}
-    if end not in links:
-        raise ValueError(f"'{path}' has no link '{end}'; there are: {', '.join(links)}")
-    tree = _Tree(links, into)
-    for node in into.values():
-        if _name(node.find("parent"), "link") not in links:
-            raise ValueError(f"joint '{_name(node)}' of '{path}' has no parent link that is in the file")
-    chain = [node for node in tree.above(end) if node.get("type") != "fixed"]
-    for node in chain:
-        if node.get("type") not in TURNING:
-            raise ValueError(
-                f"joint '{_name(node)}' of '{path}' is {node.get('type')}; only revolute, continuous and fixed joints "
-                "can move an arm"
-            )
-    if not chain:
-        raise ValueError(f"no joint moves the link '{end}' of '{path}'")
-    moving = [_name(node.find("child"), "link") for node in chain]
-    root = _name(tree.above(end)[0].find("parent"), "link")
-    origins = [tree.between(parent, child) for parent, child in zip([root, *moving], moving)]
-    joints = tuple(_joint(node, Pose.of(origin)) for node, origin in zip(chain, origins))
-    ends = [tree.between(a, b)[:3, 3] for a, b in zip(moving, [*moving[1:], end])]
-    bodies = tuple(tree.body(name, set(moving), tip, path) for name, tip in zip(moving, ends))
-    tip = Pose.of(tree.between(moving[-1], end))
-    x, y, z, *turn = base
-    placed = Pose((x, y, z), tuple(turn) or (0.0, 0.0, 0.0))  # type: ignore[arg-type]
-    return Arm(Path(path).stem, joints, bodies, end=tip, base=placed)
+        tree = _Tree(_parsed(Path(path).expanduser()), Path(path).expanduser(), packages or {})
+        arm = tree.arm(end, root, base)
+    except FileNotFoundError:
+        raise ValueError(f"there is no URDF file '{path}'") from None
+    except OSError as error:
+        raise ValueError(f"cannot read the URDF file '{path}': {error.strerror}") from None
+    except ValueError as error:
+        raise ValueError(f"URDF file '{path}': {error}") from None
+    if tree.mended:
+        warnings.warn(f"URDF file '{path}': {'; '.join(tree.mended)}", stacklevel=2)
+    return arm
+
+
+def _parsed(path: Path) -> xml.Element:
+    """The root element <robot>. Prefixes stay part of the names: many published files do not declare theirs."""
+    data = path.read_bytes()
+    declared = re.match(rb"\s*<\?xml[^>]*encoding=[\"']([\w.-]+)", data)
+    eight_bits = declared and not declared[1].lower().startswith(b"utf")
+    text = decoded(data, declared[1].decode() if declared and eight_bits else None)
+    builder, parser = xml.TreeBuilder(), expat.ParserCreate("utf-8")
+    parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
+    try:
+        parser.Parse(text.strip().encode(), True)
+    except expat.ExpatError as error:
+        raise ValueError(f"it is no XML file: {error}") from None
+    robot = builder.close()
+    if robot.tag != "robot":
+        raise ValueError(f"it is {FOREIGN.get(robot.tag, 'no URDF')}: it begins with <{robot.tag}> instead of <robot>")
+    parts = [part for child in robot if child.tag in ("link", "joint") for part in child.iter()]
+    if any(node.tag.startswith("xacro:") for node in robot.iter()) or any(
+        "${" in value or "$(" in value for part in parts for value in part.attrib.values()
+    ):
+        raise ValueError("it still holds xacro; turn it into URDF first: xacro FILE > arm.urdf")
+    return robot
 
 
 class _Tree:
-    """Links by name and the joint that leads into each."""
+    """Links by name and the joint that leads into each; ``mended``: what was not as it should be, as half sentences."""
 
-    def __init__(self, links: dict[str, xml.Element], into: dict[str, xml.Element]) -> None:
-        self.links, self.into = links, into
+    def __init__(self, robot: xml.Element, path: Path, packages: Mapping[str, str]) -> None:
+        self.links = _by_name(robot, "link")
+        self.into: dict[str, xml.Element] = {}
+        self.path, self.packages, self.mended = path, packages, list[str]()
+        for name, folder in packages.items():
+            if not Path(folder).expanduser().is_dir():
+                raise ValueError(f"packages.{name} = {folder} is not allowed: there is no such folder")
+        for name, node in _by_name(robot, "joint").items():
+            for role in ("parent", "child"):
+                if _link(node, role) not in self.links:
+                    raise ValueError(f"joint '{name}' has no {role} link that is in the file")
+            if (other := self.into.setdefault(_link(node, "child"), node)) is not node:
+                raise ValueError(f"link '{_link(node, 'child')}' hangs on two joints, '{_name(other)}' and '{name}'")
+
+    def arm(self, end: str, root: str | None, base: Sequence[float]) -> Arm:
+        for name in (end, root):
+            if name is not None and name not in self.links:
+                close = difflib.get_close_matches(name, self.links, n=1)
+                there = (
+                    f"did you mean '{close[0]}'?" if close else f"there are: {', '.join([*self.links][:40]) or 'none'}"
+                )
+                raise ValueError(f"it has no link '{name}'; {there}")
+        above = self.above(end)
+        root = root or (_link(above[0], "parent") if above else end)
+        if len(self.above(root)) > len(above) or self.above(root) != above[: len(self.above(root))]:
+            raise ValueError(f"link '{end}' does not hang on the link '{root}'")
+        chain = [node for node in above[len(self.above(root)) :] if node.get("type") != "fixed"]
+        if not chain:
+            raise ValueError(f"no joint moves the link '{end}'")
+        moving = [_link(node, "child") for node in chain]
+        self._check(chain, set(moving))
+        joints = tuple(
+            self._joint(node, Pose.of(self.between(parent, child)))
+            for node, parent, child in zip(chain, [root, *moving], moving, strict=False)
+        )
+        ends = [self.between(a, b)[:3, 3] for a, b in zip(moving, [*moving[1:], end], strict=True)]
+        bodies, doubts = zip(*(self.body(name, set(moving), tip) for name, tip in zip(moving, ends, strict=True)))
+        if off := [f"link {link.name} by {100 * share:.2g} %" for link, share in zip(bodies, doubts) if share > 1e-6]:
+            self.mended.append(
+                f"{', '.join(off)}: no rigid body has this inertia (a moment exceeds the sum of the other two, or is "
+                f"negative, by that share of the largest); up to {100 * ROUNDING:g} % is taken for rounding and mended"
+            )
+        last, axis = bodies[-1], np.array(joints[-1].axis)
+        if not axis @ last.inertia_matrix @ axis + last.mass * np.sum(np.cross(axis, last.com) ** 2) > 0:
+            raise ValueError(f"link '{last.name}' has no inertia about joint '{joints[-1].name}'; give it one")
+        stand = [shape for part in self.carried(root, set(moving)) for shape in self.shapes(part, root)]
+        x, y, z, *turn = base
+        placed = Pose((x, y, z), tuple(turn) or (0.0, 0.0, 0.0))  # type: ignore[arg-type]
+        tip = Pose.of(self.between(moving[-1], end))
+        return Arm(self.path.stem, joints, bodies, end=tip, base=placed, base_shapes=tuple(stand))
+
+    def _check(self, chain: Sequence[xml.Element], moving: set[str]) -> None:
+        """Refuse joints that no arm can have."""
+        for node in chain:
+            if node.get("type") not in TURNING:
+                raise ValueError(
+                    f"joint '{_name(node)}' is {node.get('type', 'of no type')}; only revolute, continuous and fixed "
+                    f"joints can move an arm (root: {_link(node, 'child')} begins the arm behind it)"
+                )
+            if (mimic := node.find("mimic")) is not None:
+                raise ValueError(
+                    f"joint '{_name(node)}' follows joint '{mimic.get('joint')}' (mimic), but an arm's joints are "
+                    f"free; end the arm before it, at {_link(node, 'parent')}"
+                )
+        names = set(map(_name, chain))
+        for part in [part for name in moving for part in self.carried(name, moving)]:
+            mimic = self.into[part].find("mimic")
+            if mimic is not None and part not in moving and mimic.get("joint") in names:
+                raise ValueError(
+                    f"joint '{_name(self.into[part])}' off the chain follows joint '{mimic.get('joint')}' of the arm "
+                    "(mimic); a linkage that moves with the arm cannot be simulated"
+                )
 
     def above(self, name: str) -> list[xml.Element]:
         """Joints from the root to a link."""
@@ -74,51 +165,136 @@ class _Tree:
             if self.into[name] in chain:
                 raise ValueError(f"the joints form a loop at link '{name}'; they must form a tree")
             chain.insert(0, self.into[name])
-            name = _name(chain[0].find("parent"), "link")
+            name = _link(chain[0], "parent")
         return chain
 
     def between(self, ancestor: str, name: str) -> Array:
-        """Transform (4, 4) of a link in the frame of an ancestor, all joints at 0."""
+        """Transform (4, 4) of a link in the frame of an ancestor, the joints between at 0."""
         result = np.eye(4)
         for node in self.above(name)[len(self.above(ancestor)) :]:
-            result = result @ _pose(node).matrix
+            result = result @ _pose(node).matrix @ self._still(node)
+        return result
+
+    def _still(self, node: xml.Element) -> Array:
+        """What a joint off the chain adds (4, 4): nothing at 0, or the offset of one that follows another (mimic)."""
+        result, mimic = np.eye(4), node.find("mimic")
+        offset = _floats(mimic, "offset", "0")[0]
+        if offset and node.get("type") == "prismatic":
+            result[:3, 3] = offset * _axis(node)
+        elif offset and node.get("type") in TURNING:
+            result[:3, :3] = Rotation.from_rotvec(offset * _axis(node)).as_matrix()
         return result
 
     def carried(self, name: str, moving: set[str]) -> Iterator[str]:
         """A link and those that move with it."""
         yield name
         for child, node in self.into.items():
-            if child not in moving and _name(node.find("parent"), "link") == name:
+            if child not in moving and _link(node, "parent") == name:
                 yield from self.carried(child, moving)
 
-    def body(self, name: str, moving: set[str], tip: Array, path: str) -> Link:
-        """One rigid body of a moving link and all it carries, about their common centre of mass."""
-        parts, shapes = [], []
+    def body(self, name: str, moving: set[str], tip: Array) -> tuple[Link, float]:
+        """One rigid body of a moving link and all it carries, about their common centre of mass, and by which share
+        its inertia was none of a rigid body."""
+        parts, shapes = [], list[Shape]()
         for part in self.carried(name, moving):
-            frame = self.between(name, part)
-            shapes += _shapes(self.links[part], Pose.of(frame))
+            shapes += self.shapes(part, name)
             if (inertial := self.links[part].find("inertial")) is not None:
-                parts.append(_inertial(inertial, frame))
-                if parts[-1][0] < 0:
-                    raise ValueError(
-                        f"link '{part}' of '{path}' has the mass {parts[-1][0]:g} kg; it must not be negative"
-                    )
-        if not parts:
-            raise ValueError(f"link '{name}' of '{path}' moves but has no <inertial>")
-        mass = sum(m for m, _, _ in parts)
-        com = sum(m * c for m, c, _ in parts) / (mass or 1.0)
+                parts.append((part, *_inertial(inertial, self.between(name, part))))
+                if parts[-1][1] < 0:
+                    raise ValueError(f"link '{part}' has the mass {parts[-1][1]:g} kg; it must not be negative")
+        mass = sum(m for _, m, _, _ in parts)
+        if not parts or mass == 0:
+            has = "has the mass 0 kg" if parts else "has no <inertial>"
+            raise ValueError(f"link '{name}' moves but {has}; give it a mass, or fix its joint")
+        com = sum(m * c for _, m, c, _ in parts) / mass
         total = np.zeros((3, 3))
-        for m, centre, inertia in parts:
+        for _, m, centre, inertia in parts:
             offset = centre - com
             total += inertia + m * (offset @ offset * np.eye(3) - np.outer(offset, offset))
-        if not shapes and np.linalg.norm(tip) > 0:
-            shapes = [replace(Shape.between((0, 0, 0), tip.tolist(), 0.02), collides=False)]
-        (xx, xy, xz), (_, yy, yz), (_, _, zz) = total.tolist()
-        return Link(name, float(mass), tuple(np.asarray(com).tolist()), (xx, xy, xz, yy, yz, zz), tuple(shapes))
+        rigid, share = _rigid(total, mass)
+        if share > ROUNDING:
+            worst, _, _, inertia = max(parts, key=lambda part: _rigid(part[3], part[1])[1])
+            a, b, c = np.linalg.eigvalsh(inertia)
+            raise ValueError(
+                f"link '{worst}' has the principal moments {a:.4g}, {b:.4g} and {c:.4g} kg m^2 of no rigid body: "
+                "none may be negative or exceed the sum of the other two (by more than "
+                f"{100 * ROUNDING:g} % of the largest); compute its <inertia> from mass and shape"
+            )
+        if all(shape.mesh for shape in shapes) and np.linalg.norm(tip) > 0:
+            shapes.append(replace(Shape.between((0, 0, 0), tip.tolist(), 0.02), collides=False))
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = rigid.tolist()
+        return Link(name, float(mass), tuple(np.asarray(com).tolist()), (xx, xy, xz, yy, yz, zz), tuple(shapes)), share
+
+    def shapes(self, part: str, carrier: str) -> list[Shape]:
+        """Collision shapes, or else visual ones that touch nothing, and visual meshes, in the frame of the carrier."""
+        link, frame = self.links[part], Pose.of(self.between(carrier, part))
+        solid, visual = link.findall("collision"), link.findall("visual")
+        colour = _floats(link.find("visual/material/color"), "rgba", "")
+        look = colour if len(colour) == 4 else GREY
+        found = []
+        for node in solid or visual:
+            geometry = node.find("geometry")
+            for kind, names in {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length")}.items():
+                if geometry is not None and (shape := geometry.find(kind)) is not None:
+                    size = tuple(
+                        value for name in names for value in _floats(shape, name, "0 0 0" if kind == "box" else "0")
+                    )
+                    found.append(Shape(kind, size, frame @ _pose(node), look, collides=bool(solid)))
+        for node in visual:
+            mesh = node.find("geometry/mesh")
+            if mesh is not None and (file := self._mesh(mesh.get("filename", ""))):
+                scale = tuple(map(float, mesh.get("scale", "1 1 1").split()[:3]))  # some files have a fourth number
+                found.append(Shape("mesh", scale, frame @ _pose(node), look, collides=False, mesh=str(file)))
+        return found
+
+    def _mesh(self, name: str) -> Path | None:
+        """The file of a mesh, if it is there: beside the URDF file, or in a package of the user's or above the file."""
+        scheme, _, rest = name.rpartition("://")
+        if scheme in ("package", "model"):
+            package, _, rest = rest.partition("/")
+            above = [folder if folder.name == package else folder / package for folder in self.path.resolve().parents]
+            folders = [Path(self.packages[package]).expanduser()] if package in self.packages else above
+        else:
+            folders = [self.path.parent]
+        found = [(folder / rest).resolve() for folder in folders if (folder / rest).is_file()]
+        return found[0] if found and found[0].suffix.lower() in MESHES else None
+
+    def _joint(self, node: xml.Element, origin: Pose) -> Joint:
+        name, limit, bounded = _name(node), node.find("limit"), node.get("type") == "revolute"
+        (lower,), (upper,) = _floats(limit, "lower", "0"), _floats(limit, "upper", "0")
+        (effort,), (velocity,) = _floats(limit, "effort", "inf"), _floats(limit, "velocity", "inf")
+        if bounded and lower > upper:
+            raise ValueError(f"joint '{name}' has the limits {lower:g} to {upper:g}; the lower must not be above")
+        for quantity, value in {"effort": effort, "velocity": velocity}.items():
+            if value < 0:
+                raise ValueError(f"joint '{name}' has the {quantity} limit {value:g}; it must not be negative")
+        if bounded and lower == upper:
+            if lower:
+                raise ValueError(f"joint '{name}' has the limits {lower:g} to {upper:g}; it cannot move")
+            self.mended.append(f"joint '{name}' has no limits or 0 to 0, and is taken to be without")
+            bounded = False
+        bounds = (lower, upper) if bounded else (-math.inf, math.inf)
+        return Joint(name, origin, tuple(_axis(node).tolist()), *bounds, effort or math.inf, velocity or math.inf)
 
 
-def _name(node: xml.Element | None, attribute: str = "name") -> str:
-    return "" if node is None else node.get(attribute, "")
+def _by_name(robot: xml.Element, kind: str) -> dict[str, xml.Element]:
+    """Children of <robot>; what stands deeper, such as the joints of <gazebo> or <transmission>, is none of the arm."""
+    found: dict[str, xml.Element] = {}
+    for node in robot.findall(kind):
+        if not _name(node):
+            raise ValueError(f"a {kind} has no name")
+        if found.setdefault(_name(node), node) is not node:
+            raise ValueError(f"there are two {kind}s '{_name(node)}'; names must differ")
+    return found
+
+
+def _name(node: xml.Element) -> str:
+    return node.get("name", "")
+
+
+def _link(joint: xml.Element, role: str) -> str:
+    node = joint.find(role)
+    return "" if node is None else node.get("link", "")
 
 
 def _floats(node: xml.Element | None, attribute: str, default: str) -> tuple[float, ...]:
@@ -140,24 +316,12 @@ def _pose(node: xml.Element) -> Pose:
     return Pose(_floats(origin, "xyz", "0 0 0"), _floats(origin, "rpy", "0 0 0"))  # type: ignore[arg-type]
 
 
-def _joint(node: xml.Element, origin: Pose) -> Joint:
+def _axis(node: xml.Element) -> Array:
+    """Unit vector (3,) of a joint's axis."""
     axis = np.array(_floats(node.find("axis"), "xyz", "1 0 0"))
-    limit, bounded = node.find("limit"), node.get("type") == "revolute"
-    (lower,), (upper,) = _floats(limit, "lower", "0"), _floats(limit, "upper", "0")
     if not np.any(axis):
         raise ValueError(f"joint '{_name(node)}' has the axis 0 0 0; it must have a direction")
-    if bounded and lower > upper:
-        raise ValueError(f"joint '{_name(node)}' has the limits {lower:g} to {upper:g}; the lower must not be above")
-    (effort,), (velocity,) = _floats(limit, "effort", "inf"), _floats(limit, "velocity", "inf")
-    return Joint(
-        _name(node),
-        origin,
-        tuple((axis / np.linalg.norm(axis)).tolist()),
-        lower if bounded else -math.inf,
-        upper if bounded else math.inf,
-        effort or math.inf,
-        velocity or math.inf,
-    )
+    return axis / np.linalg.norm(axis)
 
 
 def _inertial(node: xml.Element, frame: Array) -> tuple[float, Array, Array]:
@@ -170,18 +334,16 @@ def _inertial(node: xml.Element, frame: Array) -> tuple[float, Array, Array]:
     return _floats(node.find("mass"), "value", "0")[0], np.array(pose.xyz), inertia
 
 
-def _shapes(link: xml.Element, frame: Pose) -> list[Shape]:
-    """Collision shapes, or else visual ones that touch nothing, in the frame of the body that carries them."""
-    nodes = link.findall("collision")
-    colour = _floats(link.find("visual/material/color"), "rgba", "")
-    found = []
-    for node in nodes or link.findall("visual"):
-        geometry = node.find("geometry")
-        for kind, names in {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length")}.items():
-            if geometry is not None and (shape := geometry.find(kind)) is not None:
-                size = tuple(
-                    value for name in names for value in _floats(shape, name, "0 0 0" if kind == "box" else "0")
-                )
-                look = colour if len(colour) == 4 else GREY
-                found.append(Shape(kind, size, frame @ _pose(node), look, collides=bool(nodes)))
-    return found
+def _rigid(inertia: Array, mass: float) -> tuple[Array, float]:
+    """An inertia (3, 3) that a rigid body can have, and how far the given one is off, a share of its largest moment
+    (of a point mass: of that at a radius of 1 um). Its smallest and largest moments bear the change, which goes the
+    1e-12 further that the engine's test needs to survive rounding."""
+    moments, axes = np.linalg.eigh(inertia)
+    largest = max(moments[2], 1e-12 * mass, 1e-300)
+    share = max(-moments[0], moments[2] - moments[0] - moments[1], 0.0) / largest
+    low, middle, high = np.maximum(moments, 0.0)
+    excess = high - (low + middle) * (1 - 1e-12)
+    if not share and excess <= 0:
+        return inertia, 0.0
+    mended = np.array((low, middle, high)) + max(excess, 0.0) / 2 * np.array((1, 0, -1))
+    return axes @ np.diag(mended) @ axes.T, float(share)

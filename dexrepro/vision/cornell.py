@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.vision.patches import Grasp, Picture, cut
 from dexrepro.vision.tabletop import BAD, SAFE, UNSAFE
 
-Array = NDArray[np.float64]
 ROWS, COLUMNS = 480, 640
 
 
@@ -27,6 +27,7 @@ class Pixels:
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def project(self, points: Array) -> Array:
+        """Columns and rows (..., 2) of points (..., 3)."""
         return points[..., :2]
 
 

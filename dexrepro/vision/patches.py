@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter, map_coordinates
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array, Image
+
 SAMPLES = 24
 DEEPEST, HIGHEST = 0.15, 0.40  # m below and above the grasp; what lies beyond is cut off
 CHANNELS = ("red", "green", "blue", "depth", "normal x", "normal y", "normal z")
@@ -20,9 +21,11 @@ class Lens(Protocol):
     """Where points of the world appear in a picture."""
 
     @property
-    def position(self) -> tuple[float, float, float]: ...
+    def position(self) -> tuple[float, float, float]:
+        """Place of the camera [m]."""
 
-    def project(self, points: Array) -> Array: ...
+    def project(self, points: Array) -> Array:
+        """Pixel coordinates (..., 2), column and row, of points (..., 3) [m]."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ class Picture:
 
 
 def observe(
-    colours: NDArray[np.uint8], heights: Array, lens: Lens, rng: np.random.Generator, depth_noise: float = 0.002
+    colours: Image, heights: Array, lens: Lens, rng: np.random.Generator, depth_noise: float = 0.002
 ) -> Picture:
     """A picture with the noise of a depth camera: heights [m] noisy and smoothed, colours noisy by 0.02."""
     noisy = gaussian_filter(heights + depth_noise * rng.standard_normal(heights.shape), 0.7)

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.physics.rendering import Overhead
 from dexrepro.physics.world import World
-from dexrepro.robots.arm import Pose, Shape
+from dexrepro.robots.arm import Colour, Pose, Shape
 from dexrepro.vision.patches import Grasp, Picture, cut, observe
 
-Array = NDArray[np.float64]
 SAFE, UNSAFE, BAD = 0, 1, 2  # the three classes of Eq. (3.45)
 FINGER = 0.006  # m, free floor needed around a finger point
 WIDEST = 0.07  # m, widest object that the open gripper takes
@@ -108,7 +109,11 @@ def _random_item(rng: np.random.Generator, x0: float, x1: float, y0: float, y1: 
 
 def furnish(world: World, box: Box, items: list[Item], rng: np.random.Generator) -> None:
     """Put floor, walls (in random shades) and items into a world."""
-    shade = lambda: (*np.clip(rng.uniform(0.3, 0.8) + rng.uniform(-0.1, 0.1, 3), 0, 1).tolist(), 1.0)  # noqa: E731
+
+    def shade() -> Colour:
+        red, green, blue = np.clip(rng.uniform(0.3, 0.8) + rng.uniform(-0.1, 0.1, 3), 0, 1).tolist()
+        return red, green, blue, 1.0
+
     (mx, my), (width, depth), plate = box.middle, box.size, 0.01
     shapes = [Shape("box", (width, depth, plate), Pose((0, 0, -plate / 2)), shade())]
     wall = shade()
@@ -192,12 +197,20 @@ def candidates(rng: np.random.Generator, items: list[Item], box: Box, each: int 
     return result
 
 
-def training_set(config: Any, interior: Any, scenes: int, rng: np.random.Generator, size: float) -> tuple[Any, Any]:
-    """Patches (n, 7, 24, 24) of a side [m] and labels (n,) of so many random scenes in a box (x, y) [m].
+class Sight(Protocol):
+    """How scenes are seen and judged: heights and distances [m], angle of view [degrees]."""
 
-    config: camera_height, safety_margin [m] and field_of_view [degrees].
-    """
-    box = Box(tuple(interior))
+    camera_height: float
+    safety_margin: float
+    field_of_view: float
+
+
+def training_set(
+    config: Sight, interior: Sequence[float], scenes: int, rng: np.random.Generator, size: float
+) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    """Patches (n, 7, 24, 24) of a side [m] and labels (n,) of so many random scenes in a box (x, y) [m]."""
+    width, depth = interior
+    box = Box((width, depth))
     camera = Overhead((0.0, 0.0, config.camera_height), size=(180, 140), field_of_view=config.field_of_view)
     patches, labels = [], []
     for _ in range(scenes):

@@ -4,10 +4,9 @@ from functools import cache
 import numpy as np
 import pandas as pd
 import pytest
-from scipy.spatial.transform import Rotation
 
 from dexrepro.chapters.chapter1.dartboard import experiment as dartboard
-from dexrepro.chapters.chapter1.followers import Follower, rotation_error, solve_pose
+from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.force_tracking import experiment as force_tracking
 from dexrepro.chapters.chapter1.hand_over import experiment as hand_over
 from dexrepro.chapters.chapter1.hold_and_move import experiment as hold_and_move
@@ -22,6 +21,7 @@ from dexrepro.control.holding import AutoregressiveHolding, FixedDistance
 from dexrepro.physics.soft_object import Cushion
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
+from dexrepro.robots.inverse_kinematics import nearest
 from dexrepro.runner import generator, live
 
 
@@ -36,15 +36,6 @@ def case(experiment, name, **changes):
 
 def rng(experiment):
     return lambda purpose: generator(0, experiment, purpose)
-
-
-def test_rotation_error_is_the_rotation_vector():
-    vectors = np.random.default_rng(0).uniform(-1, 1, (20, 3))
-    base = Rotation.random(20, random_state=1).as_matrix()
-    for vector, actual in zip(vectors, base):
-        desired = Rotation.from_rotvec(vector).as_matrix() @ actual
-        np.testing.assert_allclose(rotation_error(desired, actual), vector, atol=1e-12)
-    assert rotation_error(np.eye(3), np.eye(3)) == [0.0, 0.0, 0.0]
 
 
 def test_simulated_arms_agree_with_the_line():
@@ -73,7 +64,7 @@ def test_printed_sign_of_the_inverse_kinematics_runs_away():
 def test_an_arm_follows_a_pose_and_carries_a_known_force():
     arm = baxter("left")
     place, rotation = np.array([0.62, 0.25, 0.3]), hold_and_move.LEVEL @ hold_and_move.FLIP
-    start = solve_pose(arm, posture("left"), place, rotation)
+    start = nearest(arm, posture("left"), place, rotation)
     with World(step=2e-3) as world:
         world.add_arm("arm", arm, start)
         follower = Follower(arm, start, dt=0.01, gain=20.0, singular=0.02, posture=0.2, bandwidth=40.0, mass_error=0.0)
@@ -84,11 +75,6 @@ def test_an_arm_follows_a_pose_and_carries_a_known_force():
         )
     wanted = np.array([target(t) for t in run.time])
     assert np.linalg.norm(run["arm.tip"] - wanted, axis=1)[250:].max() < 2e-3
-
-
-def test_a_place_out_of_reach_is_refused():
-    with pytest.raises(ValueError, match="cannot reach"):
-        solve_pose(baxter("left"), posture("left"), np.array([2.0, 0.0, 0.0]), np.eye(3))
 
 
 def test_the_path_turns_about_the_middle_of_the_held_object():

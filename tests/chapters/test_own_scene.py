@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from dexrepro.chapters.own.scene import experiment as scene
+from dexrepro.cli import run_overrides
 from dexrepro.config import InputError, compose_chapter, experiment_cases
 from dexrepro.experiment import Recording
 from dexrepro.runner import live
@@ -164,5 +165,19 @@ def test_what_cannot_be_used_gets_one_sentence(key: str, value: str, sentence: s
 
 def test_a_negative_mass_gets_one_sentence(folder: Path) -> None:
     (folder / "tiny.urdf").write_text(URDF.replace('<mass value="1"/>', '<mass value="-1"/>'))
-    with pytest.raises(InputError, match=r"link 'upper' of 'tiny\.urdf' has the mass -1 kg"):
+    with pytest.raises(InputError, match=r"'tiny\.urdf': link 'upper' has the mass -1 kg"):
         scene.simulate(configured(), None)
+
+
+def test_a_doubtful_file_is_said_once_and_kept_with_the_result(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "tiny.urdf").write_text(URDF.replace('izz="0.015"', 'izz="0.0172"'))
+    law = 'law: {_target_: dexrepro.control.computed_torque.ComputedTorque, model: "${scene.model}", frequency: 30}'
+    cases = f"+scene.cases={{a: {{{law}}}, b: {{duration: 0.1, {law}}}}}"
+    words = [f"scene.arm={TINY}", f"scene.leader={LINE}", "scene.start=[-0.5,1.0]", "scene.duration=0.2", cases]
+    for _ in ("run", "found again"):
+        assert run_overrides(["chapter=own", *words, "workers=1", "quiet=true"]) == 0
+        text = " ".join(capsys.readouterr().err.split())
+        assert text.startswith("warning: URDF file 'tiny.urdf': link upper by 1.2 %: no rigid body has this inertia")
+        assert text.count("warning") == 1

@@ -1,13 +1,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from dexrepro.control.facing import (
-    facing,
-    quaternion_from_euler,
-    quaternion_from_rotation,
-    quaternion_from_rotation_printed,
-    rotation_from_quaternion,
-)
+from dexrepro.control.facing import facing, quaternion_from_rotation_printed
+from dexrepro.robots.rotations import quaternion_from_euler, quaternion_from_rotation, rotation_from_quaternion
 
 quaternions = np.random.default_rng(3).normal(size=(2000, 4))
 quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)

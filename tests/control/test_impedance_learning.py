@@ -101,3 +101,20 @@ def test_the_printed_sign_pushes_into_the_object_without_end():
     law, history = press(ConstantGain(INITIAL), duration=1.0, printed=True)
     assert abs(history[-1, 0]) > 1.0
     assert law.desired_force * history[-1, 0] < 0
+
+
+def test_at_the_balance_the_wanted_force_is_the_one_felt_exploration_included():
+    """tau_e = -K [x - x_ob, s] + noise, solved for x: what the static reference goes to is where the force is right."""
+
+    class Target(StaticReference):
+        def acceleration(self, state, force, desired, target):
+            self.target = target
+            return super().acceleration(state, force, desired, target)
+
+    gain, reference, surface, force = ConstantGain([-5.0, 0.3]), Target(rate=20.0, dt=DT), 0.02, -0.4
+    gain.exploration = 0.07
+    law = InteractionLaw(gain, reference, COST.output, 1, contact_force=1e-6, recovery=5.0, origin=surface)
+    law(at(0.05, force), Motion(0.06, 0.0, 0.0))
+    share = (0.06 - surface) / COST.output
+    assert law.desired_force == pytest.approx(5.0 * (0.05 - surface) - 0.3 * share + 0.07)
+    assert 5.0 * (reference.target - surface) - 0.3 * share + 0.07 == pytest.approx(force)

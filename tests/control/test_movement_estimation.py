@@ -128,3 +128,13 @@ def test_a_batch_equals_single_runs():
 def test_the_number_of_rates_must_fit():
     with pytest.raises(ValueError, match="need 4 rates"):
         estimation(rates=(1.0, 1.0))
+
+
+def test_velocity_and_acceleration_are_the_derivatives_of_the_polynomial():
+    law = estimation(rates=(0.0,) * 6, coefficients=(0.5, 0.1, -0.2, 0.3, -0.4), window=None)
+    for _ in range(801):
+        law(0.5, 0.0)
+    rest = np.polynomial.Polynomial((0.5, 0.1, -0.2, 0.3, -0.4))
+    assert law.position == pytest.approx(rest(0.8))
+    assert law.velocity == pytest.approx(rest.deriv(1)(0.8))
+    assert law.acceleration == pytest.approx(rest.deriv(2)(0.8))

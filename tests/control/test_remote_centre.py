@@ -9,9 +9,9 @@ from dexrepro.control.remote_centre import (
     centre_force,
     closest_point,
     printed_centre_force,
-    tilt,
     tool_axis,
 )
+from dexrepro.robots.rotations import tilt
 
 seeds = st.integers(0, 10_000)
 

@@ -4,7 +4,7 @@ from instant import at
 
 from dexrepro.control.motion import Motion
 from dexrepro.control.target_impedance import TargetImpedance
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 ARM = PlanarChain((0.5, 0.3, 0.1), (1.5, 0.9, 0.2))
 

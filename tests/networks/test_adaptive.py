@@ -49,3 +49,14 @@ def test_learned_weights_start_a_larger_network():
     large = AdaptiveNetwork(Gaussians([[0.0], [1.0], [2.0]], 1.0), outputs=1, gain=1.0, leakage=0.0, step=0.1)
     large.reset([[2.0], [-1.0]])
     assert large.output([0.4]) == pytest.approx(small.output([0.4]))
+
+
+def test_a_reset_network_knows_only_what_it_is_given():
+    network = AdaptiveNetwork(Gaussians([[0.0], [1.0]], 1.0), outputs=1, gain=1.0, leakage=0.0, step=0.1)
+    assert network.weights.shape == (0, 1)
+    network.reset([[2.0], [-1.0]])
+    network.reset([[3.0]])
+    network.output([0.4])
+    assert network.weights.tolist() == [[3.0], [0.0]]
+    network.reset()
+    assert network.output([0.4]) == pytest.approx([0.0])

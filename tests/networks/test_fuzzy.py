@@ -14,7 +14,7 @@ SETS = {
 }
 RULES = [dict(zip(SETS, labels)) for labels in itertools.product(*SETS.values())]
 SYSTEM = FuzzySystem(SETS, RULES)
-INPUTS = {"distance": st.floats(-50, 80), "height": st.floats(-20, 40), "direction": st.floats(-5, 5)}
+INPUTS = {"distance": st.floats(-500, 800), "height": st.floats(-20, 40), "direction": st.floats(-5, 5)}
 
 
 @given(st.fixed_dictionaries(INPUTS))

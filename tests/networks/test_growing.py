@@ -64,6 +64,7 @@ def test_features_are_the_gaussian_its_cosine_and_its_sine_node_by_node():
     plain = GrowingGaussians(1, width=2.0, threshold=1.0, enhanced=False)
     plain.reset(centres)
     assert plain([0.7]) == pytest.approx(s)
+    assert (basis.capacity, plain.capacity) == (3 * 500, 500)
 
 
 def test_growth_stops_at_the_reserved_size_and_reallocates_nothing():

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from dexrepro.physics.planar_batch import PlanarPairs
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 BASE = (np.array([[0.0], [0.5]]), 0.0)
 CHAIN = PlanarChain((0.5, 0.3, 0.1), (1.5, 0.9, 0.2), base=BASE, functions=np)

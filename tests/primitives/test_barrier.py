@@ -97,3 +97,12 @@ def test_gain_carries_the_barrier_only_near_the_bound():
     constraint = Constraint(True, 75.0)
     k = gain(np.zeros((1, 2)), constraint, GAINS, 1 / 5).item()
     assert (k - 0.4) / k == pytest.approx(1.07e-6, rel=0.01)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_rate_of_the_pull_is_its_derivative_along_the_error(name):
+    constraint, rng = CASES[name], np.random.default_rng(3)
+    z1 = random_errors(constraint, rng)
+    rate, step = rng.normal(0, 100, z1.shape), 1e-6
+    difference = (constraint.pull(z1 + step * rate) - constraint.pull(z1 - step * rate)) / (2 * step)
+    np.testing.assert_allclose(constraint.pull_rate(z1, rate), difference, rtol=1e-6, atol=1e-9)

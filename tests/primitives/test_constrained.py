@@ -184,3 +184,14 @@ def test_fixed_steps_agree_with_an_adaptive_solution(law):
     path = rollout(skill, reference, Constraint(True, 150 * margin), GAINS, LAWS[law], dt, start, velocity)
     assert path.distance.max() < margin
     np.testing.assert_allclose(path.position, exact.y[:2].T, atol=5e-4)
+
+
+@pytest.mark.parametrize("rate", [0.2, 0.7])
+def test_a_projected_step_uses_up_the_share_lambda_of_the_free_margin(rate):
+    """|e+| = h - (1 - lambda) (h - |e|): the constraint is approached geometrically and never reached."""
+    _, reference = bumpy(1e-3, 5.0)
+    path = roll("none", reference, 1e-3, 0.3, projection=rate)
+    on = np.flatnonzero(path.projected)
+    assert len(on) > 10
+    free = 0.3 - path.distance
+    np.testing.assert_allclose(free[on], (1 - rate) * free[on - 1], rtol=1e-6, atol=1e-8)

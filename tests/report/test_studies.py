@@ -58,5 +58,5 @@ def test_the_command_says_where_the_drawing_is(
 ) -> None:
     monkeypatch.setattr(cli, "out", Console(width=200, highlight=False))
     assert cli.main(["study", "chapter=90", "samples=2", "workers=1"]) == 0
-    assert "drawn in results/study/decay.svg" in capsys.readouterr().out
-    assert (toy / "results/study/decay.svg").exists()
+    assert "drawn in results/studies/decay.svg" in capsys.readouterr().out
+    assert (toy / "results/studies/decay.svg").exists()

@@ -8,7 +8,7 @@ import pytest
 from dexrepro.physics.loading import LoadingError, connect, load_arm
 from dexrepro.physics.plant import bullet
 from dexrepro.robots.arm import Arm, InvalidInertia, Joint, Link, Pose, Shape, Tool
-from dexrepro.robots.baxter import baxter, data
+from dexrepro.robots.baxter import _data, baxter
 from dexrepro.robots.planar import planar
 
 
@@ -31,8 +31,8 @@ def test_engine_holds_the_inertias_of_the_description():
 
 def test_what_the_importer_complains_about_is_an_error():
     class Broken(Arm):
-        def urdf(self):
-            return super().urdf().replace("<inertial>", "<ignored>").replace("</inertial>", "</ignored>")
+        def urdf(self, meshes=False):
+            return super().urdf(meshes).replace("<inertial>", "<ignored>").replace("</inertial>", "</ignored>")
 
     arm = planar([0.5], [1.0])
     broken = Broken(arm.name, arm.joints, arm.links, end=arm.end)
@@ -72,7 +72,7 @@ def test_baxter_carries_the_makers_limits_and_masses():
     arm = baxter("left")
     np.testing.assert_array_equal(arm.effort, [50, 100, 50, 50, 15, 15, 15])
     total = sum(link.mass for link in arm.links) + arm.bodies[0][1].mass
-    assert total == pytest.approx(sum(row["mass"] for row in data()["links"]))
+    assert total == pytest.approx(sum(row["mass"] for row in _data()["links"]))
 
 
 def test_only_arms_in_a_horizontal_plane_are_planar():

@@ -5,10 +5,11 @@ import pytest
 
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.robots.baxter import baxter, posture
-from dexrepro.robots.inverse_kinematics import InverseKinematics, Unreachable, solve
-from dexrepro.robots.kinematics import forward, rotation_error
+from dexrepro.robots.inverse_kinematics import InverseKinematics, Unreachable, nearest, solve
+from dexrepro.robots.kinematics import forward, jacobian
 from dexrepro.robots.pen_arm import pen_arm
 from dexrepro.robots.planar import planar
+from dexrepro.robots.rotations import rotation_error
 
 BOOK = planar([0.5, 0.3, 0.1], [1.5, 0.9, 0.2], base=(0.5, 0.0))
 ARMS = {"planar 2": planar([0.2, 0.2], [2.0, 2.0]), "planar 3": BOOK, "pen arm": pen_arm(), "baxter": baxter("left")}
@@ -112,3 +113,12 @@ def test_rigid_body_model_may_stand_in_for_the_kinematics():
 def test_unknown_task_is_refused():
     with pytest.raises(ValueError, match="none of position, pose, axis"):
         InverseKinematics(BOOK, "orientation")
+
+
+def test_the_nearest_posture_leaves_no_pull_in_the_null_space():
+    arm, home = baxter("right"), posture("right")
+    place, turn = forward(arm, home + 0.1)
+    q = nearest(arm, home, place, turn)
+    np.testing.assert_allclose(forward(arm, q)[0], place, atol=1e-8)
+    free = np.linalg.svd(jacobian(arm, q))[2][-1]
+    assert abs(free @ (home - q)) < 1e-6 < np.abs(home - q).max()

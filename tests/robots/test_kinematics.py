@@ -6,9 +6,10 @@ import pytest
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.robots.arm import Pose, Tool
 from dexrepro.robots.baxter import baxter, extension, palm, posture
-from dexrepro.robots.kinematics import PlanarTip, forward, jacobian, point_jacobian, rotation_error
+from dexrepro.robots.kinematics import forward, jacobian, point_jacobian
 from dexrepro.robots.pen_arm import gripper, pen, pen_arm
-from dexrepro.robots.planar import planar
+from dexrepro.robots.planar import PlanarTip, planar
+from dexrepro.robots.rotations import rotation_error
 
 pin = pytest.importorskip("pinocchio")
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pybullet as bullet
 import pytest
 
+from dexrepro.physics.loading import connect, disconnect, load_arm
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.world import World
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.urdf import from_urdf
 
@@ -63,25 +66,216 @@ def test_limits_and_base_are_those_given(path: Path) -> None:
     assert forward(arm, [0.0, 0.0])[0] == pytest.approx([1 - moved[1], moved[0], moved[2]])
 
 
+def test_what_the_link_named_root_hangs_on_is_left_out(path: Path) -> None:
+    whole, part = from_urdf(str(path), "tip"), from_urdf(str(path), "tip", root="base")
+    moved = forward(whole, [0.3, 0.2])[0] - (0.1, 0.2, 0.3)
+    c, s = np.cos(0.5), np.sin(0.5)
+    assert forward(part, [0.3, 0.2])[0] == pytest.approx(
+        [c * moved[0] + s * moved[1], c * moved[1] - s * moved[0], moved[2]]
+    )
+    with pytest.raises(ValueError, match="link 'base' does not hang on the link 'eye'"):
+        from_urdf(str(path), "base", root="eye")
+
+
+LIMIT = '<limit lower="-1" upper="2" effort="0" velocity="3"/>'
+LOOP = '<joint name="loop" type="revolute"><parent>three</parent><child>one</child></joint>'
+
+
+@pytest.mark.parametrize(
+    ("change", "encoding"),
+    [
+        (("", ""), "utf-8-sig"),
+        (("", ""), "utf-16"),
+        (("", ""), "utf-16-le"),
+        (("<robot", '<?xml version="1.0" encoding="utf-16"?><robot'), "utf-16"),
+        (("<robot", '<?xml version="1.0" encoding="utf-16"?><robot'), "utf-8"),
+        (("<robot", '<?xml version="1.0" encoding="latin-1"?><!-- für --><robot'), "latin-1"),
+        (("<robot", "\n\n  <?xml version='1.0'?><robot"), "utf-8"),
+        (('velocity="2"', 'velocity="2" drake:acceleration="3"'), "utf-8"),
+        (("</robot>", f"<gazebo>{LOOP}</gazebo><ignition:plugin/></robot>"), "utf-8"),
+        (("</robot>", f"<transmission>{LOOP}<link name='one'/></transmission></robot>"), "utf-8"),
+        (("</robot>", "</robot>\n\0\0\0"), "utf-8"),
+        (('<mass value="2"/>', '<mass value="2"/><!-- ${mass} -->'), "utf-8"),
+    ],
+)
+def test_what_real_files_hold_beside_the_arm_changes_nothing(
+    path: Path, change: tuple[str, str], encoding: str
+) -> None:
+    arm = from_urdf(str(path), "tip")
+    path.write_bytes(URDF.replace(*change, 1).encode(encoding))
+    assert from_urdf(str(path), "tip") == arm
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        (("</robot>", ""), "is no XML file"),
-        (('<link name="tip"', '<link name="toe"'), "has no link 'tip'; there are: floor"),
-        (("continuous", "prismatic"), "joint 'yaw' of .* is prismatic"),
-        ((INERTIAL.format(0.1, 0.5), ""), None),
-        (('value="0.2"', 'value="-0.2"'), "link 'eye' of .* has the mass -0.2 kg"),
+        (("</robot>", ""), "it is no XML file"),
+        (("robot", "mujoco"), "it is an MJCF file of MuJoCo"),
+        (("robot", "html"), "it is no URDF: it begins with <html>"),
+        (('value="2"', 'value="${m}"'), "it still holds xacro; turn it into URDF first"),
+        (("</robot>", "<xacro:hand/></robot>"), "it still holds xacro; turn it into URDF first"),
+        (('<link name="tip"', '<link name="toe"'), "has no child link that is in the file"),
+        (('<link name="eye"', '<link name="two"'), "there are two links 'two'"),
+        (('<joint name="camera"', '<joint name="plate"'), "there are two joints 'plate'"),
+        (('<link name="eye"', "<link"), "a link has no name"),
+        (('child link="eye"', 'child link="two"'), "link 'two' hangs on two joints, 'plate' and 'camera'"),
+        (("continuous", "prismatic"), "joint 'yaw' is prismatic; .*root: one begins the arm behind it"),
+        (('"stand" type="fixed"', '"stand" type="floating"'), "joint 'stand' is floating; .*root: base begins"),
+        (('value="0.2"', 'value="-0.2"'), "link 'eye' has the mass -0.2 kg"),
         (('value="2"', 'value="heavy"'), '<mass value="heavy"> does not hold 1 numbers'),
         (('value="2"', 'value="nan"'), '<mass value="nan"> does not hold 1 numbers'),
         (('parent link="floor"', 'parent link="one"'), "the joints form a loop at link 'one'"),
-        (('parent link="floor"', 'parent link="flor"'), "joint '.*' of .* has no parent link that is in the file"),
-        (('value="2"', 'value="-4"'), "link 'one' of .* has the mass -4 kg; it must not be negative"),
+        (('parent link="floor"', 'parent link="flor"'), "joint 'stand' has no parent link that is in the file"),
+        (('value="2"', 'value="-4"'), "link 'one' has the mass -4 kg; it must not be negative"),
+        ((LIMIT, '<limit lower="2" upper="-1"/>'), "joint 'pitch' has the limits 2 to -1"),
+        ((LIMIT, '<limit lower="1" upper="1"/>'), "joint 'pitch' has the limits 1 to 1; it cannot move"),
+        ((LIMIT, '<limit lower="-1" upper="1" effort="-3"/>'), "joint 'pitch' has the effort limit -3"),
+        ((LIMIT, '<limit lower="-1" upper="1" velocity="-3"/>'), "joint 'pitch' has the velocity limit -3"),
+        ((LIMIT, LIMIT + '<mimic joint="yaw"/>'), "joint 'pitch' follows joint 'yaw' .mimic.*before it, at two"),
+        (('"camera" type="fixed">', '"camera" type="revolute"><mimic joint="pitch"/>'), "'camera' off the chain foll"),
+        ((f"<axis xyz=\"1 1 0\"/>{LIMIT}", '<axis xyz="0 0 0"/>'), "joint 'pitch' has the axis 0 0 0"),
+    ],
+)  # fmt: skip
+def test_a_file_that_cannot_be_used_gets_one_sentence(path: Path, change: tuple[str, str], sentence: str) -> None:
+    text = URDF.replace("\n", "")
+    assert change[0] in text
+    count = -1 if change[0] == "robot" else 1
+    path.write_text(text.replace(*change, count))
+    with pytest.raises(ValueError, match=f"three.urdf': .*{sentence}") as caught:
+        from_urdf(str(path), "tip")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_body_weighs_what_it_carries(path: Path) -> None:
+    path.write_text(URDF.replace(INERTIAL.format(0.1, 0.5), ""))
+    assert from_urdf(str(path), "tip").links[1].mass == pytest.approx(0.2)
+    path.write_text(URDF.replace(INERTIAL.format(0.05, 2), "").replace(INERTIAL.format(0.02, 1), ""))
+    with pytest.raises(ValueError, match="link 'one' moves but has no <inertial>; give it a mass, or fix its joint"):
+        from_urdf(str(path), "tip")
+    path.write_text(URDF.replace('value="2"', 'value="0"').replace('value="1"', 'value="0"'))
+    with pytest.raises(ValueError, match="link 'one' moves but has the mass 0 kg; give it a mass, or fix its joint"):
+        from_urdf(str(path), "tip")
+
+
+ROD = """<robot name="rod"><link name="base"/>
+<joint name="{0}" type="revolute"><parent link="base"/><child link="bar"/><axis xyz="0 1 0"/>
+<limit lower="-3" upper="3" effort="50" velocity="5"/></joint>
+<link name="bar"><inertial><origin xyz="0.2 0 0" rpy="{1}"/><mass value="{2}"/>
+<inertia ixx="{3}" iyy="{4}" izz="{5}" ixy="{6}" ixz="{7}" iyz="{8}"/></inertial></link>
+<joint name="mount" type="fixed"><parent link="bar"/><child link="tip"/><origin xyz="0.4 0 0"/></joint>
+<link name="tip"/></robot>"""
+
+
+def rod(folder: Path, moments: tuple[float, ...], mass: float = 1.0, rpy: str = "0 0 0") -> str:
+    (folder / "rod.urdf").write_text(ROD.format("turn", rpy, mass, *moments, *(0,) * (6 - len(moments))))
+    return str(folder / "rod.urdf")
+
+
+@pytest.mark.parametrize("excess", [0.009, 0.03])
+def test_a_makers_rounding_is_mended_with_one_warning(tmp_path: Path, excess: float) -> None:
+    path = rod(tmp_path, (0.003, 0.02, 0.023 / (1 - excess)))
+    with pytest.warns(UserWarning, match=rf"rod.urdf': link bar by {100 * excess:.2g} %") as caught:
+        arm = from_urdf(path, "tip")
+    assert len(caught) == 1
+    a, b, c = np.linalg.eigvalsh(arm.links[0].inertia_matrix)
+    assert c == pytest.approx(a + b)
+    assert [a, b, c] == pytest.approx([0.003, 0.02, 0.023], abs=excess * 0.023)
+    torque = RigidBodyModel(arm).inverse_dynamics(np.zeros(1), np.zeros(1), np.ones(1))
+    assert torque == pytest.approx([0.04 + 0.02 - 9.81 * 0.2], abs=excess * 0.023)
+
+
+@pytest.mark.parametrize(
+    ("moments", "numbers"),
+    [
+        ((0.003, 0.02, 0.03), "0.003, 0.02 and 0.03 kg m.2"),
+        ((-0.003, 0.02, 0.02), "-0.003, 0.02 and 0.02"),
+        ((0.02, 0.02, 0.02, 0.03), "-0.01, 0.02 and 0.05"),
     ],
 )
-def test_a_file_that_cannot_be_used_gets_one_sentence(path: Path, change: tuple[str, str], sentence: str) -> None:
-    path.write_text(URDF.replace(*change))
-    if sentence is None:
-        assert from_urdf(str(path), "tip").links[1].mass == pytest.approx(0.2), "what it carries still has mass"
-        return
-    with pytest.raises(ValueError, match=sentence):
-        from_urdf(str(path), "tip")
+def test_what_is_no_rounding_is_refused_with_the_numbers(
+    tmp_path: Path, moments: tuple[float, ...], numbers: str
+) -> None:
+    with pytest.raises(ValueError, match=f"rod.urdf': link 'bar' has the principal moments {numbers}.*compute its <in"):
+        from_urdf(rod(tmp_path, moments), "tip")
+
+
+@pytest.mark.parametrize("rpy", ["0 0 0", "0.3 0.7 -0.2", "0 1.5707963267948966 0", "0.4 -1.5707963267948966 0.3"])
+@pytest.mark.parametrize(
+    ("moments", "mass"),
+    [
+        ((0.0, 0.02, 0.02), 1.0),  # a thin rod: the largest moment is the sum of the others
+        ((0.01, 0.02, 0.03), 1.0),  # a plate
+        ((180.42, 177.68, 20.495, -0.83462, 0.32549, -20.82), 950.0),  # an industrial arm's
+        ((0.0, 0.0, 0.0), 1.0),  # a point mass
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_rounding_stops_no_engine(tmp_path: Path, rpy: str, moments: tuple[float, ...], mass: float) -> None:
+    path = rod(tmp_path, moments, mass, rpy)
+    arm, reference = from_urdf(path, "tip"), pin.buildModelFromUrdf(path)
+    q, dq, ddq = np.array([[0.3], [0.5], [2.0]])
+    wanted = pin.rnea(reference, reference.createData(), q, dq, ddq)
+    assert RigidBodyModel(arm).inverse_dynamics(q, dq, ddq) == pytest.approx(wanted, rel=1e-5)
+    with World(gravity=(0, 0, 0)) as world:
+        world.add_arm("arm", arm, [0.0])
+        speed = world.run(0.01, {"arm": lambda sense: (np.array([5.0]), np.array([1e-9]))})["arm.velocity"][-1]
+    inertia = pin.crba(reference, reference.createData(), q)[0, 0]
+    assert speed == pytest.approx([5.0 * 0.009 / inertia], rel=0.12), "with damping, which asks for the mass matrix"
+
+
+def test_no_limits_or_zeros_are_none(path: Path) -> None:
+    path.write_text(URDF.replace(LIMIT, ""))
+    with pytest.warns(UserWarning, match="joint 'pitch' has no limits or 0 to 0"):
+        assert from_urdf(str(path), "tip").upper.tolist() == [np.inf, np.inf]
+
+
+def test_a_follower_off_the_chain_stands_at_its_offset(path: Path) -> None:
+    plain = from_urdf(str(path), "tip")
+    turning = '"camera" type="revolute"><axis xyz="0 1 0"/><mimic joint="else" offset="0.5"/>'
+    path.write_text(URDF.replace('"camera" type="fixed">', turning))
+    turned = from_urdf(str(path), "tip")
+    assert turned.links[1].mass == plain.links[1].mass
+    assert turned.links[1].com != pytest.approx(plain.links[1].com, abs=1e-6)
+
+
+OBJ = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.3\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n"
+VISUAL = '<visual><origin xyz="0 0 0.1"/><geometry><mesh filename="{}" scale="2 2 2"/></geometry></visual>'
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "packages"),
+    [
+        ("meshes/a.obj", "meshes", None),
+        ("package://my arm/meshes/a.obj", "elsewhere/meshes", {"my arm": "elsewhere"}),
+        ("package://my_arm/a.obj", "my_arm", None),
+        ("file://{}/a.obj", "", None),
+    ],
+)
+def test_meshes_that_are_there_are_seen_and_touch_nothing(
+    tmp_path: Path, name: str, place: str, packages: dict[str, str] | None
+) -> None:
+    (tmp_path / place).mkdir(parents=True, exist_ok=True)
+    (tmp_path / place / "a.obj").write_text(OBJ)
+    path = tmp_path / "rod.urdf"
+    path.write_text(ROD.format("turn", "0 0 0", 1, 0.001, 0.02, 0.02, 0, 0, 0).replace(
+        "</inertial>", "</inertial>" + VISUAL.format(name.format(tmp_path))))  # fmt: skip
+    folders = packages and {key: str(tmp_path / value) for key, value in packages.items()}
+    arm = from_urdf(str(path), "tip", packages=folders)
+    kinds = [shape.kind for shape in arm.links[0].shapes]
+    assert kinds == ["mesh", "capsule"]
+    assert not any(shape.collides for shape in arm.links[0].shapes)
+    for meshes, expected in ((True, bullet.GEOM_MESH), (False, bullet.GEOM_CAPSULE)):
+        client = connect()
+        (seen,) = bullet.getVisualShapeData(load_arm(client, arm, meshes), physicsClientId=client)
+        disconnect(client)
+        assert seen[2] == expected
+        assert seen[3] == pytest.approx((2, 2, 2)) or not meshes
+
+
+def test_meshes_that_are_not_there_are_capsules(tmp_path: Path) -> None:
+    path = tmp_path / "rod.urdf"
+    text = ROD.format("turn", "0 0 0", 1, 0.001, 0.02, 0.02, 0, 0, 0)
+    path.write_text(text.replace("</inertial>", "</inertial>" + VISUAL.format("package://no/a.obj")))
+    assert [shape.kind for shape in from_urdf(str(path), "tip").links[0].shapes] == ["capsule"]
+    with pytest.raises(ValueError, match=r"packages.no = nowhere is not allowed: there is no such folder"):
+        from_urdf(str(path), "tip", packages={"no": "nowhere"})

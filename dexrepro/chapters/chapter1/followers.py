@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -11,19 +10,11 @@ from numpy.typing import NDArray
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.inverse_kinematics import InverseKinematics
+from dexrepro.robots.planar import PlanarChain
+from dexrepro.robots.rotations import rotation_error
 
 Array = NDArray[np.float64]
-
-
-def rotation_error(desired: Array, actual: Array) -> list[float]:
-    """Rotation vector [rad], world frame, that turns ``actual`` (3, 3) into ``desired``; below half a turn."""
-    (_, a, b), (c, _, d), (e, f, _) = difference = (desired @ actual.T).tolist()
-    x, y, z = 0.5 * (f - d), 0.5 * (b - e), 0.5 * (c - a)
-    sine = math.sqrt(x * x + y * y + z * z)
-    cosine = 0.5 * (difference[0][0] + difference[1][1] + difference[2][2] - 1.0)
-    share = math.atan2(sine, cosine) / sine if sine > 1e-9 else 1.0
-    return [share * x, share * y, share * z]
 
 
 class ComputedTorque:
@@ -61,58 +52,28 @@ class Follower:
         self, arm: Arm, home: Array, *, dt: float, gain: float, singular: float, posture: float, bandwidth: float,
         mass_error: float,
     ) -> None:  # fmt: skip
-        self.arm, self.home, self.dt = arm, np.array(home, float), dt
-        self.gain, self.singular, self.posture = gain, singular**2 * np.eye(6), posture
-        self.model = RigidBodyModel(arm, mass_error=mass_error)
+        self.dt, self.model = dt, RigidBodyModel(arm, mass_error=mass_error)
+        self.inverse = InverseKinematics(arm, "pose", gain, dt, singular, home, posture, self.model)
         self.torque = ComputedTorque(self.model, bandwidth)
 
     def reset(self, position: Array) -> None:
         """Start from joint angles (7,) [rad]."""
-        self.reference = np.array(position, float)
-        self.torque.reset(self.reference)
+        self.inverse.reset(position)
+        self.torque.reset(position)
         self.last: tuple[Array, Array] | None = None
 
     def go(self, sense: Sense, position: Array, rotation: Array) -> ComputedTorque:
         """Aim at a position (3,) [m] and rotation (3, 3); returns the controller of the coming control period."""
-        here, attitude = self.model.forward(self.reference)
-        jacobian = self.model.jacobian(self.reference)
-        error = np.concatenate([position - here, rotation_error(rotation, attitude)])
         velocity = np.zeros(6)
         if self.last is not None:
             velocity[:3] = (position - self.last[0]) / self.dt
-            velocity[3:] = np.array(rotation_error(rotation, self.last[1])) / self.dt
-        self.last = np.array(position), np.array(rotation)
-        inverse = jacobian.T @ np.linalg.inv(jacobian @ jacobian.T + self.singular)
-        pull = self.posture * (self.home - self.reference)
-        rate = inverse @ (velocity + self.gain * error) + pull - inverse @ (jacobian @ pull)
-        rate = np.clip(rate, -self.arm.speed, self.arm.speed)
-        after = np.clip(self.reference + self.dt * rate, self.arm.lower, self.arm.upper)
-        rate = (after - self.reference) / self.dt
+            velocity[3:] = rotation_error(rotation, self.last[1]) / self.dt
+        self.last, before = (np.array(position), np.array(rotation)), self.inverse.position
+        self.inverse(position, rotation, velocity)
         # At the angles it has, not at those it should have: the difference buckles a light wrist under load.
         compensation = -self.model.jacobian(sense.position)[:3].T @ sense.force
-        self.torque.refer(sense.time, self.reference, rate, compensation)
-        self.reference = after
+        self.torque.refer(sense.time, before, self.inverse.velocity, compensation)
         return self.torque
-
-
-def solve_pose(arm: Arm, start: Array, position: Array, rotation: Array, home: Array | None = None) -> Array:
-    """Joint angles (n,) [rad] that bring the end point to a pose. Raises ValueError where none is found."""
-    model = RigidBodyModel(arm)
-    q = np.array(start, float)
-    for k in range(400):
-        here, attitude = model.forward(q)
-        error = np.concatenate([position - here, rotation_error(rotation, attitude)])
-        jacobian = model.jacobian(q)
-        inverse = jacobian.T @ np.linalg.inv(jacobian @ jacobian.T + 1e-4 * np.eye(6))
-        pull = 0.05 * ((start if home is None else home) - q) * (k < 150)
-        step = 0.3 * inverse @ error + pull - inverse @ (jacobian @ pull)
-        q = np.clip(q + step, arm.lower, arm.upper)
-        if k >= 150 and np.abs(step).max() < 1e-12:
-            break
-    model.close()
-    if np.linalg.norm(error) > 2e-3:
-        raise ValueError(f"arm '{arm.name}' cannot reach {np.round(position, 3)} m: off by {np.linalg.norm(error):.3g}")
-    return q
 
 
 class PlanarFollower:
@@ -134,14 +95,10 @@ class PlanarFollower:
     def __call__(self, sense: Sense, x: float, y: float) -> Any:
         """Joint torques (3,) [N m] on the way to (x, y) [m]."""
         q, (hx, hy) = self.reference, self.chain.forward(self.reference)
-        (a1, a2, a3), (b1, b2, b3) = self.chain.jacobian(q)
         vx = (x - self.last[0]) / self.dt + self.gain * (x - hx)
         vy = (y - self.last[1]) / self.dt + self.gain * (y - hy)
         self.last = x, y
-        aa, ab, bb = a1 * a1 + a2 * a2 + a3 * a3, a1 * b1 + a2 * b2 + a3 * b3, b1 * b1 + b2 * b2 + b3 * b3
-        determinant = aa * bb - ab * ab
-        u, v = (bb * vx - ab * vy) / determinant, (aa * vy - ab * vx) / determinant
-        rate = (a1 * u + b1 * v, a2 * u + b2 * v, a3 * u + b3 * v)
+        rate = self.chain.rates(q, (vx, vy))
         compensation = self.chain.tip_torque(sense.position.tolist(), (-sense.force[0], -sense.force[1]))
         self.torque.refer(sense.time, np.array(q), np.array(rate), np.array(compensation))
         dt = self.dt

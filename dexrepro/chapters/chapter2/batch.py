@@ -18,7 +18,7 @@ from dexrepro.control.holding_reference import ImpedanceReference
 from dexrepro.control.movement_estimation import MovementEstimation
 from dexrepro.control.passive_impedance import PassiveImpedance
 from dexrepro.physics.planar_batch import PlanarPairs
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 Array = NDArray[np.float64]
 SPIN = 200.0  # rad/s, a joint faster than this has lost control whatever the force

@@ -15,8 +15,7 @@ from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic, Ends
 from dexrepro.physics.plant import Controller
 from dexrepro.physics.world import World
-from dexrepro.robots.planar import planar
-from dexrepro.robots.planar_chain import Links, PlanarChain
+from dexrepro.robots.planar import Links, PlanarChain, planar
 
 ESTIMATE = ("rest_position", "stiffness", "rest_velocity")
 

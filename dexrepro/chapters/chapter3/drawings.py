@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter3.scene import ARM, centreline, gripper_arm
-from dexrepro.control.remote_centre import closest_point, tilt, tool_axis
+from dexrepro.control.remote_centre import closest_point, tool_axis
 from dexrepro.experiment import Config, Recording
 from dexrepro.robots.kinematics import forward
+from dexrepro.robots.rotations import tilt
 
 
 def describe(config: Config) -> str:

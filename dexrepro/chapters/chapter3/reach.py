@@ -13,21 +13,14 @@ from dexrepro.chapters.chapter3.scene import ARM, ELBOW, WRIST, gripper_arm
 from dexrepro.control.contract import Command, Measured, report
 from dexrepro.control.motion import Motion, quintic
 from dexrepro.control.null_space import consistent_damping, consistent_inverse, damped_inverse
-from dexrepro.control.remote_centre import (
-    centre_force,
-    closest_point,
-    cross,
-    printed_centre_force,
-    rotation_matrix,
-    tilt,
-    tool_axis,
-)
+from dexrepro.control.remote_centre import centre_force, closest_point, printed_centre_force, tool_axis
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.drive import JointDrive
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import joint_frames
+from dexrepro.robots.rotations import cross, rotation_matrix, tilt
 
 Array = NDArray[np.float64]
 BEYOND = 1.6  # a retreat's length over that of the insertion

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.elements import Carried
-from dexrepro.physics.world import Camera, World
+from dexrepro.physics.rendering import Camera
+from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm, Pose, Shape
 from dexrepro.robots.baxter import baxter, extension, posture, torso
 from dexrepro.robots.inverse_kinematics import solve

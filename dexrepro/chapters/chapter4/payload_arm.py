@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from dexrepro.control.contract import Command, Law, build, report
 from dexrepro.control.motion import Sampled, via_points
@@ -18,26 +18,14 @@ from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
-from dexrepro.robots import kinematics
-from dexrepro.robots.arm import Arm
 from dexrepro.robots.baxter import baxter
+from dexrepro.robots.inverse_kinematics import nearest
 
 Array = NDArray[np.float64]
 TRAINING = (0, 1)  # phases I and II; phase III has the numbers 2 to 10, one a trajectory
 START_COLOUR, END_COLOUR = (0.90, 0.62, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
 VIEW = Camera(target=(0.42, -0.45, 0.15), distance=1.5, yaw=-60.0, pitch=-20.0)
 EVERY = 2  # physics steps between recorded samples
-
-
-def posture_at(arm: Arm, point: ArrayLike, posture: ArrayLike) -> Array:
-    """Joint angles (7,) [rad] with the end point at ``point`` [m], as near to ``posture`` as its null space allows."""
-    q = preferred = np.asarray(posture, dtype=float)
-    for _ in range(200):
-        jacobian = kinematics.jacobian(arm, q)[:3]
-        inverse = np.linalg.pinv(jacobian)
-        step = inverse @ (np.asarray(point) - kinematics.forward(arm, q)[0])
-        q = q + step + 0.1 * (np.eye(7) - inverse @ jacobian) @ (preferred - q)
-    return q
 
 
 def motions(config: Config) -> Iterator[tuple[int, Sampled]]:
@@ -56,7 +44,7 @@ def scene(config: Config) -> World:
     """The right arm at rest with its end point at X_0 and the payload hanging from it."""
     world = World(step=config.step, gravity=(0.0, 0.0, -9.81), perturbation=config.perturbation)
     arm = baxter("right")
-    world.add_arm("arm", arm, position=posture_at(arm, config.task.home, config.task.posture))
+    world.add_arm("arm", arm, position=nearest(arm, config.task.posture, config.task.home, task="position"))
     if config.payload:
         payload = config.payload
         world.hang("payload", "arm", payload.mass, payload.drop, radius=0.04, angular_damping=payload.angular_damping)

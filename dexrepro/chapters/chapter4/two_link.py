@@ -18,42 +18,11 @@ from dexrepro.physics.elements import Push
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.world import World
 from dexrepro.robots.planar import planar
+from dexrepro.robots.two_link import TwoLink
 
 Array = NDArray[np.float64]
 SNAPSHOT = 50  # control periods between two records of the weights
 ELLIPSE, FROZEN = 4, 5  # segment numbers after the strokes 0 to 3
-
-
-class TwoLink:
-    """Kinematics in closed form: x right, y up, joint angles [rad] from the horizontal and from the first link."""
-
-    def __init__(self, lengths: list[float]) -> None:
-        self._first, self._second = lengths
-
-    def position(self, q: Array) -> Array:
-        """Tip (x, y) [m]."""
-        a, b = q[0], q[0] + q[1]
-        return np.array(
-            [
-                self._first * math.cos(a) + self._second * math.cos(b),
-                self._first * math.sin(a) + self._second * math.sin(b),
-            ]
-        )
-
-    def jacobian(self, q: Array) -> Array:
-        """Tip velocity per joint rate, shape (2, 2) [m/rad]."""
-        a, b = q[0], q[0] + q[1]
-        x, y = self._second * math.cos(b), self._second * math.sin(b)
-        return np.array([[-self._first * math.sin(a) - y, -y], [self._first * math.cos(a) + x, x]])
-
-    def inverse(self, x: float, y: float) -> Array:
-        """Joint angles [rad] that put the tip at (x, y) [m], with the elbow angle positive."""
-        cosine = (x * x + y * y - self._first**2 - self._second**2) / (2 * self._first * self._second)
-        elbow = math.acos(cosine)
-        shoulder = math.atan2(y, x) - math.atan2(
-            self._second * math.sin(elbow), self._first + self._second * math.cos(elbow)
-        )
-        return np.array([shoulder, elbow])
 
 
 def stroke(config: Config, angle: float, duration: float) -> Sampled:
@@ -81,7 +50,7 @@ def scene(config: Config) -> World:
     """The arm at rest with its tip at the start, under gravity and the force field at its tip."""
     world = World(step=config.step, gravity=(0.0, -config.arm.gravity, 0.0), perturbation=config.perturbation)
     arm = planar(config.arm.lengths, config.arm.masses, config.arm.inertias, radius=0.03)
-    world.add_arm("arm", arm, position=TwoLink(config.arm.lengths).inverse(*config.task.start))
+    world.add_arm("arm", arm, position=TwoLink(config.arm.lengths).inverse(config.task.start))
     x, y = config.task.force
     world.add(Push("arm", lambda time: (x, y, 0.0), name="field"))
     return world

@@ -23,8 +23,7 @@ from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
 from dexrepro.primitives import Demonstration
 from dexrepro.robots.arm import Shape, Tool
-from dexrepro.robots.pen_arm import DARK, LENGTH, WHITE, pen, pen_arm
-from dexrepro.robots.pen_kinematics import pen_arm_angles, pen_arm_tip
+from dexrepro.robots.pen_arm import DARK, LENGTH, WHITE, pen, pen_arm, pen_arm_angles, pen_arm_tip
 
 SETTLED = 1.0  # s, from here on errors count as settled
 HEIGHT = -0.10  # m, of paper and table below the arm's shoulder

@@ -14,7 +14,7 @@ from dexrepro.primitives.constrained import LAWS, Law, Path, Reference, Skill, r
 from dexrepro.primitives.demonstration import Demonstration
 from dexrepro.primitives.dmp import DMP, Trajectory
 from dexrepro.primitives.kernels import GaussianKernels
-from dexrepro.primitives.spring_damper import SpringDamper
+from dexrepro.primitives.transformation import SpringDamper
 
 Array = NDArray[Any]
 
@@ -50,8 +50,7 @@ def skill(primitives: list[DMP], movements: list[Trajectory]) -> Skill:
         forcing=np.stack([p.forcing(m.time) for p, m in zip(primitives, movements)], axis=1),
         goal=np.stack([p.goal for p in primitives]),
         time_constant=tau,
-        stiffness=primitives[0].system.stiffness,
-        damping=primitives[0].system.damping,
+        system=primitives[0].system,
         nominal=np.stack([m.acceleration for m in movements], axis=1) * tau,
     )
 

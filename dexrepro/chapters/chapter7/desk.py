@@ -26,7 +26,7 @@ from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Pose, Shape
-from dexrepro.robots.pen_arm import DARK, LENGTH, gripper, pen_arm
+from dexrepro.robots.pen_arm import DARK, gripper, pen_arm, pen_arm_angles, pen_arm_tip
 
 Array = NDArray[np.float64]
 
@@ -52,18 +52,6 @@ def to_board(points: Array) -> Array:
     )
 
 
-def joint_angles(points: Array) -> Array:
-    """Joint angles (..., 3) [rad], elbow up, that bring the tip to points (..., 3) [m] of the robot's frame."""
-    radius = np.hypot(points[..., 0], points[..., 1])
-    height = points[..., 2]
-    cosine = (radius**2 + height**2 - 2 * LENGTH**2) / (2 * LENGTH**2)
-    if np.abs(cosine).max() > 1:
-        raise ValueError(f"the path leaves the reach of the arm, {2 * LENGTH:g} m")
-    elbow = -np.arccos(cosine)
-    shoulder = np.arctan2(height, radius) - np.arctan2(LENGTH * np.sin(elbow), LENGTH * (1 + np.cos(elbow)))
-    return np.stack([np.arctan2(points[..., 1], points[..., 0]), shoulder, elbow], axis=-1)
-
-
 class Reference(Sampled):
     """What the joints are to do every control period, with the ``tip`` (N, 3) [m] and the ``stiffness`` (N,) [-].
 
@@ -76,18 +64,10 @@ class Reference(Sampled):
         phase = np.clip(time - hold, 0.0, duration)
         samples = np.linspace(0.0, duration, len(path))
         tip = CubicSpline(samples, to_robot(path))(phase)
-        position = gaussian_filter1d(joint_angles(tip), config.reference_smoothing / period, axis=0, mode="nearest")
+        position = gaussian_filter1d(pen_arm_angles(tip), config.reference_smoothing / period, axis=0, mode="nearest")
         velocity = np.gradient(position, period, axis=0)
         super().__init__(period, position, velocity, np.gradient(velocity, period, axis=0))
-        self.tip, self.stiffness = forward(position), np.interp(phase, samples, stiffness)
-
-
-def forward(position: Array) -> Array:
-    """Tip (..., 3) [m] of the robot's frame at joint angles (..., 3) [rad]."""
-    yaw, shoulder, elbow = np.moveaxis(position, -1, 0)
-    radius = LENGTH * (np.cos(shoulder) + np.cos(shoulder + elbow))
-    height = LENGTH * (np.sin(shoulder) + np.sin(shoulder + elbow))
-    return np.stack([radius * np.cos(yaw), radius * np.sin(yaw), height], axis=-1)
+        self.tip, self.stiffness = pen_arm_tip(position), np.interp(phase, samples, stiffness)
 
 
 def planned(config: Config) -> tuple[skills.NewTask, Reference]:
@@ -112,7 +92,7 @@ def build(config: Config, start: Array, contacts: bool = False) -> World:
     world = World(step=config.physics_step, perturbation=config.perturbation)
     jaws = () if contacts else JAWS  # what touches is the rounded end of the forearm
     arm = pen_arm(replace(gripper(config.arm.gripper_mass), shapes=jaws), effort=config.torque_limit)
-    angles = joint_angles(start) - np.asarray(config.initial_error)
+    angles = pen_arm_angles(start) - np.asarray(config.initial_error)
     world.add_arm("arm", arm, angles, contacts=contacts, sensor=Sensor(**(config.sensor or {})))
     world.add(JointLoad("arm", joint_friction(config.arm.viscous, config.arm.coulomb)))
     return world
@@ -122,7 +102,7 @@ def demonstration_scene(config: Config) -> World:
     """The arm with a finger handle that a person moves past the tall stack at the far place."""
     handle = replace(gripper(), name="handle", shapes=(Shape("cylinder", (0.012, 0.01), colour=DARK),))
     world = World(gravity=(0.0, 0.0, 0.0))
-    world.add_arm("arm", pen_arm(handle), joint_angles(to_robot(np.array([*config.scene.start, 0.0]))))
+    world.add_arm("arm", pen_arm(handle), pen_arm_angles(to_robot(np.array([*config.scene.start, 0.0]))))
     furnish(world, Obstacle(config.scene.far, config.scene.tall, config.scene.cube), cube=False)
     for name, place in (("start", config.scene.start), ("goal", config.scene.goal)):
         x, y, _ = to_robot(np.array([*place, 0.0]))

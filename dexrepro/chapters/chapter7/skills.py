@@ -144,8 +144,7 @@ class Primitive:
         smooth = low_pass(paths, cutoff, self.rate, padding, axis=-2)  # type: ignore[arg-type]
         velocity = self.duration * np.gradient(smooth, 1 / self.rate, axis=-2, edge_order=2)
         acceleration = self.duration * np.gradient(velocity, 1 / self.rate, axis=-2, edge_order=2)
-        correct = self.system.forcing(smooth, velocity, acceleration, goal)
-        return correct - 2 * self.system.damping * velocity if self.printed_target else correct
+        return self.system.forcing(smooth, velocity, acceleration, goal, self.printed_target)
 
     def fit(self, target: Array) -> Array:
         """Weights (n, d) of the kernels for a forcing term (N, d), Eq. (7.20)."""
@@ -153,25 +152,10 @@ class Primitive:
 
     def rollout(self, forcing: Array, start: ArrayLike, goal: ArrayLike, printed: bool = False) -> Array:
         """Movements (..., N, d) under forcing terms (..., N, d), Eq. (7.36); ``printed``: T X' = V' as in (7.33)."""
+        step = 1 / (len(self.time) - 1)
         if printed:
-            return self._printed_rollout(forcing, np.asarray(start, float), np.asarray(goal, float))
-        return self.system.solve(forcing, 1 / (len(self.time) - 1), start, goal)[0]
-
-    def _printed_rollout(self, forcing: Array, start: Array, goal: Array) -> Array:
-        """T V' = K (G - X) - D V + F with T X' = V': X = X0 + V / T, so V obeys one equation of first order."""
-        stiffness, damping, period = self.system.stiffness, self.system.damping, self.duration
-        rate = (damping + stiffness / period) / period
-        step = rate / self.rate
-        decay = np.exp(-step)
-        hold = (1 - decay) / step
-        later = (1 - hold) / step
-        drive = (forcing + stiffness * (goal - start)) / (period * self.rate)
-        velocity = np.zeros_like(drive)
-        for k in range(1, len(self.time)):
-            velocity[..., k, :] = (
-                decay * velocity[..., k - 1, :] + (hold - later) * drive[..., k - 1, :] + later * drive[..., k, :]
-            )
-        return start + velocity / period
+            return self.system.solve_printed(forcing, step, start, goal, self.duration)
+        return self.system.solve(forcing, step, start, goal)[0]
 
 
 def enhancement(config: Config, kernels: GaussianKernels, draw: int | None = None) -> ExtendedKernels:

@@ -27,14 +27,6 @@ def two_link(arm: Any) -> Arm:
     return planar(arm.lengths, arm.masses, inertias, centres=arm.centres)
 
 
-def joint_angles(arm: Any, position: Array) -> Array:
-    """Joint angles [rad], shape (2,), that put the end point at a position (2,) [m]; elbow -1 is elbow-up."""
-    first, second = arm.lengths
-    x, y = float(position[0]), float(position[1])
-    bend = arm.elbow * math.acos((x * x + y * y - first**2 - second**2) / (2.0 * first * second))
-    return np.array([math.atan2(y, x) - math.atan2(second * math.sin(bend), first + second * math.cos(bend)), bend])
-
-
 def circle(settings: Any) -> Path:
     """The desired path of Eq. (8.46) as a function of time [s], from an angle ``phase`` [rad] on."""
     (cx, cy), radius, rate, phase = settings.centre, settings.radius, settings.rate, settings.phase

@@ -18,8 +18,7 @@ from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
-from dexrepro.robots.planar import planar
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain, planar
 
 RATE = 50.0
 CASES = ("c1", "c2", "c3")

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import Config, Figure, Recording
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 from .experiment import CASES, LATE
 

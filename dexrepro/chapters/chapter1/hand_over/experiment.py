@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
-from dexrepro.chapters.chapter1.followers import Follower, solve_pose
+from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, TABLE
 from dexrepro.chapters.measures import rms
 from dexrepro.control.hand_over import ContactLatch
@@ -22,6 +22,7 @@ from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
+from dexrepro.robots.inverse_kinematics import nearest
 
 RATE = 100.0
 ARRIVED = 2.5  # s, DFR has reached the object
@@ -35,7 +36,7 @@ def scene(config: Config, rng: Any = None) -> World:
     for name, side in SIDES.items():
         arm = baxter(side)
         offset = -config.leader_distance if name == "leader" else ready
-        start = solve_pose(arm, posture(side), place + offset * ALONG, LEVEL if name == "leader" else LEVEL @ FLIP)
+        start = nearest(arm, posture(side), place + offset * ALONG, LEVEL if name == "leader" else LEVEL @ FLIP)
         noise = rng("force sensor") if rng and name == "follower" else None
         world.add_arm(
             name, arm, start, sensor=Sensor(force_noise=config.sensor_noise) if noise else Sensor(), rng=noise

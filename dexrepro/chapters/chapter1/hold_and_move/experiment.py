@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 from scipy import signal
 
-from dexrepro.chapters.chapter1.followers import Follower, solve_pose
+from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.claims import PRINTED
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.chapters.measures import rms
-from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
+from dexrepro.control.facing import facing
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import TipForce
@@ -27,7 +27,9 @@ from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
+from dexrepro.robots.inverse_kinematics import nearest
 from dexrepro.robots.kinematics import forward
+from dexrepro.robots.rotations import quaternion_from_rotation, rotation_from_quaternion
 
 RATE = 50.0
 SIDES = {"leader": "right", "follower": "left"}
@@ -50,7 +52,7 @@ def scene(config: Config, rng: Any = None) -> World:
         arm = baxter(side)
         place, rotation = (middle(config) - half, LEVEL) if name == "leader" else (middle(config) + half, LEVEL @ FLIP)
         sensor = Sensor(force_noise=config.sensor.noise, force_delay=config.sensor.delay * config.control_period)
-        start = solve_pose(arm, posture(side), place, rotation)
+        start = nearest(arm, posture(side), place, rotation)
         noise = rng("force sensor") if rng and name == "follower" else None
         world.add_arm(name, arm, start, sensor=sensor if noise else Sensor(), rng=noise)
     radius = config.object.radius

@@ -15,16 +15,18 @@ import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
-from dexrepro.chapters.chapter1.followers import Follower, solve_pose
+from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, joint_channels
 from dexrepro.chapters.measures import rms
-from dexrepro.control.facing import facing, quaternion_from_rotation, rotation_from_quaternion
+from dexrepro.control.facing import facing
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
+from dexrepro.robots.inverse_kinematics import nearest
 from dexrepro.robots.kinematics import forward
+from dexrepro.robots.rotations import quaternion_from_rotation, rotation_from_quaternion
 
 RATE = 25.0
 SHAKEN, APPROACH, HOLD, PITCHED = 18.0, 24.0, 30.0, 38.0  # s, ends of the phases
@@ -63,7 +65,7 @@ def scene(config: Config) -> World:
               "follower": (centre + config.start_offset * along, LEVEL @ FLIP)}  # fmt: skip
     for name, side in SIDES.items():
         arm = baxter(side)
-        world.add_arm(name, arm, solve_pose(arm, posture(side), *starts[name]))
+        world.add_arm(name, arm, nearest(arm, posture(side), *starts[name]))
     world.add_sphere("object", config.radius, config.place, colour=BALL)
     return world
 

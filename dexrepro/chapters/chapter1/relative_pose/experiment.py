@@ -12,16 +12,11 @@ import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
-from dexrepro.control.facing import (
-    facing,
-    quaternion_from_euler,
-    quaternion_from_rotation,
-    quaternion_from_rotation_printed,
-    rotation_from_quaternion,
-)
+from dexrepro.control.facing import facing, quaternion_from_rotation_printed
 from dexrepro.control.pose_transformation import ConstantScaling, RelativePose, SpeedScaling
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
+from dexrepro.robots.rotations import quaternion_from_euler, quaternion_from_rotation, rotation_from_quaternion
 
 RATE = 1000.0
 

@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
-from dexrepro.chapters.chapter1.followers import Follower, solve_pose
+from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import FLIP, LEVEL, SIDES, TABLE
 from dexrepro.chapters.measures import rms
 from dexrepro.control.hand_over import ContactLatch
@@ -25,6 +25,7 @@ from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, palm, posture
+from dexrepro.robots.inverse_kinematics import nearest
 
 RATE = 100.0
 SIZES = ("small", "medium", "large")
@@ -42,7 +43,7 @@ def scene(config: Config, rng: Any = None, offset: Any = (0.0, 0.0, 0.0)) -> Wor
         arm = baxter(side, tool=palm())
         away = (-1 if name == "leader" else 1) * (0.5 * config.width + config.stand_off)
         rotation = LEVEL if name == "leader" else LEVEL @ FLIP
-        start = solve_pose(arm, posture(side), place + away * ALONG, rotation)
+        start = nearest(arm, posture(side), place + away * ALONG, rotation)
         noise = rng("force sensor") if rng and name == "follower" else None
         sensor = Sensor(force_noise=config.sensor_noise) if noise else Sensor()
         world.add_arm(name, arm, start, contacts=True, sensor=sensor, rng=noise)

@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from dexrepro.chapters.chapter2.gain_search import experiment as gain_search
+from dexrepro.chapters.chapter2.gain_search import figures as gain_search
 from dexrepro.experiment import Config, Recording
 
 TABLES = {"T2.H": "Gains found for the Baxter experiment: the best of equally many random candidates"}

@@ -9,7 +9,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter2.planar_pair import path
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 
 def simulate(config: Config, rng: Any) -> Recording:

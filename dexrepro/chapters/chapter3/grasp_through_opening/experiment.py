@@ -18,8 +18,8 @@ from scipy.stats import beta
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.scene import ARM, Touching, add_box, cutaway, gripper_arm, start_posture
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.physics.rendering import Overhead
-from dexrepro.physics.world import Camera, World
+from dexrepro.physics.rendering import Camera, Overhead
+from dexrepro.physics.world import World
 from dexrepro.vision.classifier import GraspClassifier
 from dexrepro.vision.patches import Grasp, Picture, cut, observe
 from dexrepro.vision.tabletop import BAD, Box, Item, label, place_items, scatter, taken, training_set

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
-from dexrepro.physics.world import Camera
+from dexrepro.physics.rendering import Camera
 
 FIGURES = {
     "3.D": Figure(

@@ -13,7 +13,8 @@ from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
 from dexrepro.chapters.chapter3.scene import ARM, Touching, build, cutaway
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.physics.world import Camera, World
+from dexrepro.physics.rendering import Camera
+from dexrepro.physics.world import World
 
 Array = NDArray[np.float64]
 RATE = 50.0

@@ -11,6 +11,7 @@ from dexrepro.chapters.chapter4.measures import Array, rms
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.robots import kinematics
 from dexrepro.robots.baxter import baxter
+from dexrepro.robots.rotations import rotation_error
 
 RATE = 50.0
 
@@ -54,7 +55,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
 def _hand_tilt(positions: Array) -> float:
     """Largest sine of the angle by which the hand, whose orientation is not controlled, turned from its start."""
     rotations = kinematics.forward(baxter("right"), positions)[1]
-    errors = np.linalg.norm(kinematics.rotation_error(rotations[0], rotations), axis=-1)
+    errors = np.linalg.norm(rotation_error(rotations[0], rotations), axis=-1)
     return float(np.max(np.sin(np.minimum(errors, np.pi / 2))))
 
 

@@ -10,7 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter5 import pen
 from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
-from dexrepro.robots.pen_kinematics import pen_arm_tip
+from dexrepro.robots.pen_arm import pen_arm_tip
 
 from .experiment import VIEW
 

@@ -51,7 +51,7 @@ def _agents(config: Config) -> dict[str, NDArray[Any]]:
         return np.array([[0.0, 0.0], [0.0, a.push if active else 0.0]])
 
     starts = np.array([[0.0, 0.0], [0.0, a.distance]])
-    agents = Agents(config.coupling, a.distance, config.prediction, a.slowing, decay=config.dmp.gamma)
+    agents = Agents(config.coupling, a.distance, config.prediction, a.slowing, primitive.system, decay=config.dmp.gamma)
     paths = agents.rollout(forcing, starts, starts + [10.0, 0.0], push, config.step, 1.0)
     gap = np.linalg.norm(paths[:, 0] - paths[:, 1], axis=1) - a.distance
     missed = np.linalg.norm(paths[-1] - starts - [10.0, 0.0], axis=1).max()
@@ -86,7 +86,7 @@ def _surface(config: Config) -> dict[str, NDArray[Any]]:
     step = 3.0 * config.step
     movement = primitive.rollout(step, horizon=3.0)
     batch = learning.skill([primitive], [movement])
-    skill = learning.Skill(batch.forcing[:, 0], primitive.goal, 3.0)
+    skill = learning.Skill(batch.forcing[:, 0], primitive.goal, 3.0, primitive.system)
     path, force = SurfaceFollower(config.coupling, config.prediction, set_force).rollout(
         skill, primitive.start, step, lambda x: float(bump(x, s.height)), s.stiffness
     )

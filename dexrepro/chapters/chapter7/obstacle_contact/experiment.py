@@ -14,6 +14,7 @@ from dexrepro.control.contract import build
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.reaching import Obstacle
 from dexrepro.physics.elements import Push
+from dexrepro.robots.pen_arm import pen_arm_tip
 
 RATE = 200.0
 
@@ -47,7 +48,7 @@ def predicted_deviation(recording: Recording, config: Config) -> float:
     """
     angles, nudge = recording["reference"][-1], 1e-6
     steps = nudge * np.eye(3)
-    jacobian = (desk.forward(angles + steps) - desk.forward(angles - steps)).T / (2 * nudge)
+    jacobian = (pen_arm_tip(angles + steps) - pen_arm_tip(angles - steps)).T / (2 * nudge)
     law = build(config.law, model=None, stiffness=None)
     if not hasattr(law, "impedance"):
         return math.nan

@@ -8,6 +8,7 @@ import numpy as np
 
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.robots.pen_arm import pen_arm_angles
 
 RATE = 50.0
 
@@ -47,7 +48,7 @@ def photographs(config: Config, reactions: np.ndarray) -> dict[str, Any]:
     path = reactions[number, 0]
     passage = skills.reach(config).moment(config.scene.far)
     instants = {"platform": 0.0, "a": 0.0, "b": 0.25, "c": passage, "d": 1.0}
-    angles = {name: desk.joint_angles(desk.to_robot(path[round(u * (len(path) - 1))])) for name, u in instants.items()}
+    angles = {name: pen_arm_angles(desk.to_robot(path[round(u * (len(path) - 1))])) for name, u in instants.items()}
     with scene(config) as world:
         return desk.photographs(world, angles, camera=desk.WIDE)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from dexrepro.chapters.chapter8.task import beyond, circle, joint_angles, two_link
+from dexrepro.chapters.chapter8.task import beyond, circle, two_link
 from dexrepro.control.barrier_tracking import barrier_energy
 from dexrepro.control.contract import build, channels
 from dexrepro.experiment import Config, Metrics, Recording
@@ -17,6 +17,7 @@ from dexrepro.physics.drive import EndPointDrive
 from dexrepro.physics.elements import JointLoad, joint_friction
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
+from dexrepro.robots.two_link import TwoLink
 
 RATE = 100.0
 
@@ -24,7 +25,8 @@ RATE = 100.0
 def scene(config: Config) -> World:
     """The arm in a vertical plane (gravity along -y), its end point at the start."""
     world = World(step=config.step, gravity=(0.0, -config.gravity, 0.0), perturbation=config.perturbation)
-    world.add_arm("arm", two_link(config.arm), joint_angles(config.arm, config.start))
+    start = TwoLink(config.arm.lengths).inverse(config.start, config.arm.elbow)
+    world.add_arm("arm", two_link(config.arm), start)
     friction = config.friction
     if friction.coulomb or friction.viscous:
         world.add(JointLoad("arm", joint_friction(friction.viscous, friction.coulomb, friction.width)))

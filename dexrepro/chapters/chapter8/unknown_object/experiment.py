@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter8 import learning_study
-from dexrepro.chapters.chapter8.task import beyond, circle, displaced, joint_angles, two_link
+from dexrepro.chapters.chapter8.task import beyond, circle, displaced, two_link
 from dexrepro.control.contract import build
 from dexrepro.control.impedance_learning import TRANSFERRING, InteractionLaw
 from dexrepro.control.interaction_optimum import InteractionModel, steady_cost, steady_fraction
@@ -19,6 +19,7 @@ from dexrepro.physics.drive import EndPointDrive
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
+from dexrepro.robots.two_link import TwoLink
 
 RATE = 100.0
 
@@ -27,7 +28,7 @@ def scene(config: Config) -> World:
     """The arm in a vertical plane and an object whose surface is the plane x = surface, frictionless along y."""
     world = World(step=config.step, gravity=(0.0, -config.gravity, 0.0), perturbation=config.perturbation)
     start = circle(config.path)(0.0).position if config.start is None else np.array(config.start)
-    world.add_arm("arm", two_link(config.arm), joint_angles(config.arm, start))
+    world.add_arm("arm", two_link(config.arm), TwoLink(config.arm.lengths).inverse(start, config.arm.elbow))
     stiffness, damping, surface = config.object.stiffness, config.object.damping, config.object.surface
 
     def push(time: float, position: Any, velocity: Any) -> tuple[float, float, float]:

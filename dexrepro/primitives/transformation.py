@@ -1,22 +1,23 @@
-"""The spring-damper of a movement primitive, solved exactly.
+"""The transformation system of a movement primitive, a spring-damper, and the ways of integrating it.
 
 A primitive's forcing term depends on the phase, hence on time alone, so the primitive is a linear time-invariant system
 driven by a known signal. With the forcing linear between samples its solution is exact for any step; it is computed as
-two first-order recursions, without a loop over the samples and for any number of movements at once.
+two first-order recursions, without a loop over the samples and for any number of movements at once. A coupling that
+depends on the state is stepped: :func:`exact`, :func:`runge_kutta` and :func:`semi_implicit` take each other's place.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import expm
 from scipy.signal import lfilter
 
-Array = NDArray[Any]
+from dexrepro.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -67,13 +68,15 @@ class SpringDamper:
         """Critically damped: D = 2 sqrt(K)."""
         return cls(stiffness, 2 * stiffness**0.5)
 
-    def forcing(self, position: Array, velocity: Array, acceleration: Array, goal: ArrayLike) -> Array:
-        """F that makes the system follow a path: v' - K (g - x) + D v; Eq. (5.5) with the sign of D v corrected.
+    def forcing(
+        self, position: Array, velocity: Array, acceleration: Array, goal: ArrayLike, printed: bool = False
+    ) -> Array:
+        """F that makes the system follow a path: v' - K (g - x) + D v; ``printed``: - D v as in Eqs. (5.5), (7.21).
 
         velocity = tau dx/dt and acceleration = tau^2 d2x/dt2, all (..., N, d); goal (..., d).
         """
         error = np.asarray(goal)[..., None, :] - position
-        return acceleration - self.stiffness * error + self.damping * velocity
+        return acceleration - self.stiffness * error + (-self.damping if printed else self.damping) * velocity
 
     def acceleration(self, position: Array, velocity: Array, goal: Array, forcing: Array) -> Array:
         """tau v' = tau^2 d2x/dt2 at a state (scaled velocity)."""
@@ -109,6 +112,25 @@ class SpringDamper:
         y = lfilter([1.0], [1.0, -c.decay_y], drive, axis=-2)
         return y.real + (goal[..., None, :] if goal.ndim else goal), (u + c.first * y).real
 
+    def solve_printed(
+        self, forcing: ArrayLike, step: float, start: ArrayLike, goal: ArrayLike, time_constant: float
+    ) -> Array:
+        """Positions (..., N, d) from rest under tau x' = v' as Eq. (7.33) prints it, so x = x0 + v / tau.
+
+        What is left is tau v' = -(D + K / tau) v + K (g - x0) + F, of first order; arguments as for ``solve``, and
+        time_constant: tau [s].
+        """
+        start, goal = np.asarray(start, dtype=float)[..., None, :], np.asarray(goal, dtype=float)[..., None, :]
+        rate = (self.damping + self.stiffness / time_constant) * step
+        decay = np.exp(-rate)
+        hold = (1 - decay) / rate
+        later = (1 - hold) / rate
+        drive = step * (np.asarray(forcing, dtype=float) + self.stiffness * (goal - start))
+        drive[..., 1:, :] = (hold - later) * drive[..., :-1, :] + later * drive[..., 1:, :]
+        drive[..., 0, :] = 0.0
+        velocity: Array = lfilter([1.0], [1.0, -decay], drive, axis=-2)
+        return start + velocity / time_constant
+
     def step(
         self, position: Array, velocity: Array, goal: Array, forcing: Array, following: Array, step: float
     ) -> tuple[Array, Array]:
@@ -119,3 +141,64 @@ class SpringDamper:
         y_next = c.decay_y * y + c.cross * u + c.force_y[0] * forcing + c.force_y[1] * following
         u_next = c.decay_u * u + c.force_u[0] * forcing + c.force_u[1] * following
         return y_next.real + goal, (u_next + c.first * y_next).real
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of tau v' = K (g - x) - D v + F + p(x, v), tau x' = v + C, for any of the integrators below.
+
+    goal: g (..., d); time_constant: tau [s], a number or one a run (..., 1); forcing: F at both ends of the step, each
+    (..., d); coupling: p as a function of position and scaled velocity (..., d); drift: C (..., d), held meanwhile.
+    """
+
+    system: SpringDamper
+    goal: Array
+    time_constant: float | Array
+    forcing: tuple[Array, Array]
+    coupling: Callable[[Array, Array], Array] | None = None
+    drift: Array | None = None
+
+    def acceleration(self, share: float, position: Array, velocity: Array) -> Array:
+        """v' (..., d) after a share of the step, 0, 1/2 or 1."""
+        first, last = self.forcing
+        forcing = first if share == 0 else last if share == 1 else (first + last) / 2
+        own = self.system.acceleration(position, velocity, self.goal, forcing) / self.time_constant
+        return own if self.coupling is None else own + self.coupling(position, velocity) / self.time_constant
+
+    def rate(self, velocity: Array) -> Array:
+        """x' (..., d)."""
+        return (velocity if self.drift is None else velocity + self.drift) / self.time_constant
+
+
+Integrator = Callable[[Step, Array, Array, float], tuple[Array, Array]]
+"""``integrator(step, x, v, dt)``: position and scaled velocity (..., d) after a time dt [s]."""
+
+
+def exact(step: Step, position: Array, velocity: Array, dt: float) -> tuple[Array, Array]:
+    """The closed form for a forcing linear and a coupling constant during the step; one time constant for all runs."""
+    coupling = 0.0 if step.coupling is None else step.coupling(position, velocity)
+    drift = 0.0 if step.drift is None else step.drift
+    # w = v + C obeys the system with the additional forcing D C.
+    first, last = (forcing + coupling + step.system.damping * drift for forcing in step.forcing)
+    tau = float(step.time_constant)
+    position, velocity = step.system.step(position, velocity + drift, step.goal, first, last, dt / tau)
+    return position, velocity - drift
+
+
+def runge_kutta(step: Step, position: Array, velocity: Array, dt: float) -> tuple[Array, Array]:
+    """The classical method of fourth order.
+
+    A steering term turns v without braking it; explicit Euler steps would speed it up and blame the term.
+    """
+    rate_x = rate_v = total_x = total_v = np.zeros(())
+    for share, weight in ((0.0, 1), (0.5, 2), (0.5, 2), (1.0, 1)):
+        x, v = position + share * dt * rate_x, velocity + share * dt * rate_v
+        rate_x, rate_v = step.rate(v), step.acceleration(share, x, v)
+        total_x, total_v = total_x + weight * rate_x, total_v + weight * rate_v
+    return position + dt / 6 * total_x, velocity + dt / 6 * total_v
+
+
+def semi_implicit(step: Step, position: Array, velocity: Array, dt: float) -> tuple[Array, Array]:
+    """First the velocity, by the acceleration at the start, then the position with the new velocity."""
+    velocity = velocity + dt * step.acceleration(0.0, position, velocity)
+    return position + dt * step.rate(velocity), velocity

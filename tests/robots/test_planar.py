@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dexrepro.robots.planar_chain import PlanarChain
+from dexrepro.robots.planar import PlanarChain
 
 ARM = PlanarChain((0.5, 0.3, 0.1), (1.5, 0.9, 0.2), base=(0.5, 0.0))
 angles = st.tuples(*[st.floats(-3, 3)] * 3)

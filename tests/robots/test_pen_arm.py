@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from dexrepro.robots.kinematics import forward
-from dexrepro.robots.pen_arm import pen, pen_arm
-from dexrepro.robots.pen_kinematics import pen_arm_angles, pen_arm_tip
+from dexrepro.robots.pen_arm import pen, pen_arm, pen_arm_angles, pen_arm_tip
 
 ANGLES = np.random.default_rng(0).uniform((-1, -0.5, -2.2), (1, 1, -0.3), size=(20, 3))
 

@@ -5,12 +5,8 @@ import signal
 import time
 
 import numpy as np
-import pandas as pd
 
-from dexrepro.experiment import Figure, Recording
-
-FIGURES = {"90.10": Figure("simulated decay", "a falling curve")}
-TABLES = {"T90.1": "final values"}
+from dexrepro.experiment import Recording
 
 
 def simulate(config, rng):
@@ -38,16 +34,3 @@ def measure(recording, config):
 
 def summarise(metrics, config):
     return {"ratio": metrics["plain"]["final"] / metrics["fast"]["final"]}
-
-
-def draw(recordings, metrics, config):
-    from dexrepro.report import style
-
-    figure, axes = style.subplots()
-    for case, recording in recordings.items():
-        axes.plot(recording.time, recording["x"], label=case)
-    return {"90.10": figure}
-
-
-def tabulate(recordings, metrics, config):
-    return {"T90.1": pd.DataFrame({"case": list(recordings), "final": [metrics[c]["final"] for c in recordings]})}
