@@ -54,7 +54,7 @@ def run(tmp_path, experiment, *overrides):
 
 CASES = {
     "corrected": "{hand.letter: w}",
-    "printed_sign": "{hand.letter: w, law.network_sign: -1}",
+    "printed_sign": "{hand.letter: w, law.printed: [network]}",
     "no_network": "{hand.letter: w, network.enabled: false}",
 }
 
