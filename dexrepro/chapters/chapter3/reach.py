@@ -17,6 +17,7 @@ from dexrepro.control.remote_centre import centre_force, closest_point, printed_
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.drive import JointDrive
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import joint_frames
@@ -107,7 +108,7 @@ class Reach:
         self.tracking = 0.0
         self.observed = np.zeros(7)
 
-    def __call__(self, sense: Any) -> Command:
+    def __call__(self, sense: Sense) -> Command:
         config, q, dq = self.config, sense.position, sense.velocity
         centre, state = self._centre(sense.time), State(self.arm, q)
         mass, bias, gravity = self.model.mass_matrix(q), self.model.bias(q, dq), self.model.gravity(q)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter8 import learning_study
 from dexrepro.chapters.chapter8.task import beyond, displaced
 from dexrepro.control.contract import build, channels
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
 from dexrepro.control.motion import Motion, Path
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.networks import GrowingGaussians
 from dexrepro.physics.drive import EndPointDrive, Posture, limited
 from dexrepro.physics.elements import TipForce
@@ -57,7 +57,7 @@ def approach(settings: Any) -> Path:
     return motion
 
 
-def simulate(config: Config, rng: Callable[[str], np.random.Generator]) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     interaction = config.interaction
     model, limits = RigidBodyModel(baxter("right")), np.array(config.torque_limits)
     law = build(config.law, model=model)
@@ -155,7 +155,7 @@ def _joint_counts(recording: Recording, config: Config) -> Metrics:
     return result
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Stiffness [N/m] below which the learned law compresses the sponge more than the wrong-model regulator."""
     if "lqr" not in metrics:
         return {}
