@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from dexrepro import chapters
+from dexrepro.case import generator, live
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import Command, Measured, check, report
 from dexrepro.control.motion import Motion
 from dexrepro.physics.world import World
-from dexrepro.runner import generator, live
 
 
 class Told:
