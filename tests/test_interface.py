@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 from conftest import ROOT
 
-FOLDERS = ("humans", "networks", "physics", "primitives", "robots", "vision")
+FOLDERS = ("control", "humans", "networks", "physics", "primitives", "robots", "vision")
 Definition = ast.ClassDef | ast.FunctionDef
 
 
