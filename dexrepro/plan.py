@@ -209,7 +209,8 @@ def own_digest(values: Mapping[str, Any]) -> str:
         if not isinstance(text, str) or "." not in text:
             continue
         if key.rpartition(".")[2] != "_target_":
-            paths.update(map(Path, glob.glob(text)))
+            named = Path(text).expanduser()
+            paths.update([named] if named.exists() else map(Path, glob.glob(str(named))))
         elif not text.startswith("dexrepro."):
             with contextlib.suppress(ImportError, AttributeError, ValueError):
                 module = Path(str(importlib.util.find_spec(text.rpartition(".")[0]).origin))  # type: ignore[union-attr]
