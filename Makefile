@@ -1,5 +1,6 @@
-# make figures: run the book, render its films and build its report.  make test: all tests.  Both set up everything they need.
-PYTHON ?= python3
+# make figures: run the book, render its films and build its report.  make test: all tests.  Both set up everything they
+# need, by a Python of their own choice; PYTHON=... chooses another.
+PYTHON ?=
 BIN := .venv/bin
 EXTRAS ?= dev
 
@@ -34,14 +35,12 @@ mutation: .venv/ready
 wheel: .venv/ready
 	$(BIN)/python -m build
 
-.venv/ready: pyproject.toml .ci/constraints.txt
-	$(PYTHON) -c 'import sys; sys.exit("dexrepro needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
-	$(PYTHON) -m venv .venv
-	$(BIN)/pip install --quiet --disable-pip-version-check -c .ci/constraints.txt -e '.[$(EXTRAS)]'
+.venv/ready: pyproject.toml .ci/constraints.txt .ci/environment
+	.ci/environment $(EXTRAS) $(PYTHON)
 	touch $@
 
 .venv/bench: .venv/ready
-	$(BIN)/pip install --quiet --disable-pip-version-check -c .ci/constraints.txt -e '.[$(EXTRAS),bench]'
+	.ci/environment $(EXTRAS),bench $(PYTHON)
 	touch $@
 
 clean:

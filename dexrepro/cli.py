@@ -10,8 +10,9 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext, suppress
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
@@ -19,11 +20,19 @@ from rich.table import Table
 from dexrepro import __version__
 from dexrepro.config import InputError
 
+if TYPE_CHECKING:
+    from dexrepro.baselines import ChapterReport
+
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--help", "-h", "--info", "-i", "--hydra-help", "--resolve")
 SHOWN = 6  # names in one line of the check
 STUDY = ("claim", "samples", "hours")  # what only a study knows
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
 
+for name in ("stdout", "stderr"):  # closed, or of an alphabet that lacks a sign: no reason to fail
+    stream: Any = getattr(sys, name) or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  as long as we run
+    setattr(sys, name, stream)
+    if hasattr(stream, "reconfigure"):
+        stream.reconfigure(errors="backslashreplace")
 out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 160)
 err = Console(stderr=True, highlight=False, soft_wrap=True)
 
@@ -32,9 +41,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Entry point; returns the exit status."""
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    sys.path.insert(0, "")  # a user's own classes, named by _target_
+    sys.path.append("")  # a user's own classes, named by _target_: behind all that is installed
     try:
-        return _dispatch(arguments)
+        return _dispatch(_experiments_option(arguments))
     except KeyboardInterrupt:
         err.print("interrupted; the same command completes what is missing", markup=False)
         return INTERRUPTED
@@ -57,9 +66,29 @@ def _dispatch(arguments: list[str]) -> int:
     return int(options.function(options))
 
 
+def _experiments_option(arguments: list[str]) -> list[str]:
+    """Add the folders that ``--experiments DIR`` names, before or behind any command; the other arguments."""
+    from dexrepro import chapters
+
+    parser = argparse.ArgumentParser(prog="dexrepro", add_help=False, allow_abbrev=False)
+    parser.add_argument("--experiments", action="append", default=[], type=Path, metavar="DIR")
+    options, rest = parser.parse_known_args(arguments)
+    for folder in options.experiments:
+        if not folder.is_dir():
+            raise InputError(f"--experiments = {folder} is not allowed: there is no such folder")
+        known = chapters.numbers()
+        chapters.add(folder)
+        if chapters.numbers() == known and not chapters.is_added(known[0]):
+            raise InputError(
+                f"--experiments = {folder} adds nothing: an experiment is a folder in it with experiment.py"
+            )
+    return rest
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="dexrepro", description="Reproduce the book's figures and check its claims.")
     parser.add_argument("--version", action="version", version=f"dexrepro {__version__}")
+    parser.add_argument("--experiments", metavar="DIR", help="experiments of your own, beside the book's")
     commands = parser.add_subparsers(required=True, metavar="command")
     commands.add_parser("run", help="simulate, measure and draw (see: dexrepro run --help)", add_help=False)
     selection = argparse.ArgumentParser(add_help=False)
@@ -67,6 +96,7 @@ def _parser() -> argparse.ArgumentParser:
 
     listing = commands.add_parser("list", help="chapters, experiments, cases, figures, claims, errata")
     listing.add_argument("--json", action="store_true")
+    listing.add_argument("--markdown", action="store_true", help="the claims of the book counted by verdict")
     listing.set_defaults(function=list_command)
 
     check = commands.add_parser("check", parents=[selection], help="compare results with the stored baselines")
@@ -82,6 +112,7 @@ def _parser() -> argparse.ArgumentParser:
     report.set_defaults(function=report_command)
 
     study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
+    study.add_argument("--update", action="store_true", help="renew the study that is shipped")
     study.set_defaults(function=study_command)
 
     render = commands.add_parser("render", parents=[selection], help="animate recorded runs (case=NAME format=gif|mp4)")
@@ -89,6 +120,7 @@ def _parser() -> argparse.ArgumentParser:
 
     new = commands.add_parser("new", help="write a working control law of your own, with its test")
     new.add_argument("what", choices=["controller"])
+    new.add_argument("--kind", choices=["joint", "end_point", "holding"], default="holding")
     new.add_argument("name", help="class name, for example MyLaw")
     new.set_defaults(function=new_command)
 
@@ -135,7 +167,7 @@ def _make_importable(folder: str) -> None:
     if not Path(folder).is_dir():
         raise InputError(f"--config-dir = {folder} is not allowed: there is no such folder")
     if (path := str(Path(folder).resolve())) not in sys.path:
-        sys.path.insert(0, path)
+        sys.path.append(path)
 
 
 def run_overrides(overrides: Sequence[str], extra_dir: str | None = None) -> int:
@@ -211,26 +243,28 @@ def _run_job(config: Any) -> None:
 
 
 def _print_summary(outcome: Any) -> None:
-    from dexrepro.experiment import AFTER_CORRECTION, NOT_EVALUATED, NOT_REPRODUCED, REPRODUCED
+    from dexrepro.claims import NOT_EVALUATED, VERDICTS
     from dexrepro.runner import summary_rows
 
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("experiment", "wall [s]", "x real time", REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED, "result"):
+    rows = summary_rows(outcome)
+    shown = [verdict for verdict in VERDICTS if any(row["claims"].get(verdict) for row in rows)]
+    for column in ("experiment", "wall [s]", "x real time", *shown, "result"):
         table.add_column(column, justify="left" if column in ("experiment", "result") else "right", no_wrap=True)
     evaluated = True
-    for row in summary_rows(outcome):
+    for row in rows:
         factor = f"{row['real_time_factor']:.1f}" if row["real_time_factor"] else ""
         verdicts = row["claims"]
         evaluated = evaluated and not verdicts.get(NOT_EVALUATED)
-        counts = [str(verdicts.get(key, 0) or "") for key in (REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED)]
+        counts = [str(verdicts.get(key, 0) or "") for key in shown]
         table.add_row(row["experiment"], f"{row['wall']:.1f}", factor, *counts, row["folder"])
     out.print(table)
     for name, reason in outcome.skipped.items():
         out.print(f"{name} skipped: {reason}", markup=False)
     for name, differs in outcome.differs.items():
         if differs and name in outcome.folders:
-            shown = ", ".join(differs[:8]) + (f" and {len(differs) - 8} more" if len(differs) > 8 else "")
-            out.print(f"{name} differs from the book in: {shown}", markup=False)
+            named = ", ".join(differs[:8]) + (f" and {len(differs) - 8} more" if len(differs) > 8 else "")
+            out.print(f"{name} differs from the book in: {named}", markup=False)
     if not evaluated:
         out.print("claims whose metrics this run does not have are not evaluated")
 
@@ -239,8 +273,13 @@ def _print_summary(outcome: Any) -> None:
 
 
 def list_command(options: argparse.Namespace) -> int:
-    """Everything there is, as text or JSON."""
+    """Everything there is, as text or JSON; or the claims of the book counted, as the README's table."""
+    from dexrepro import scoreboard
     from dexrepro.report.listing import listing
+
+    if options.markdown:
+        print(scoreboard.markdown())
+        return OK
 
     data = listing()
     if options.json:
@@ -262,51 +301,54 @@ def check_command(options: argparse.Namespace) -> int:
     from dexrepro.selection import existing, selected
 
     numbers, only, results, workers, _ = selected(options.selection)
-    if options.update and only:
-        raise InputError("--update renews whole chapters; leave out only= and figure=")
     if options.update:
         for number in numbers:
-            for line in baselines.update_chapter(number, results, accept=options.accept, workers=workers):
+            for line in baselines.update_chapter(number, results, only, accept=options.accept, workers=workers):
                 out.print(line, markup=False)
-            out.print(f"wrote {baselines.baseline_dir() / f'chapter{number}.json'}", markup=False)
         return OK
     try:
         reports = [baselines.check_chapter(number, existing(results), only) for number in numbers]
     except baselines.ResultsMissing as missing:
         err.print(str(missing), markup=False)
         return WRONG
-    ok = all(map(baselines.is_ok, reports))
+    ok = all(report.ok for report in reports)
     if options.json:
-        print(json.dumps({"ok": ok, "chapters": reports}, indent=1))
+        print(json.dumps({"ok": ok, "chapters": list(map(asdict, reports))}, indent=1))
     else:
         for report in reports:
             _print_check(report)
     return OK if ok else FAILED
 
 
-def _print_check(report: dict[str, Any]) -> None:
-    changed = {claim["id"]: claim for claim in report["claims"] if claim["id"] in report["verdict_changed"]}
+def _print_check(report: ChapterReport) -> None:
+    changed = [claim for claim in report.claims if claim.id in report.verdict_changed]
     out.print(
-        f"chapter {report['chapter']}: {report['compared']} metrics compared, {len(report['drifted'])} drifted, "
-        f"{len(report['missing'])} missing, {len(report['new'])} new, {len(report['skipped'])} skipped; "
-        f"{len(report['claims'])} claims, {len(changed)} verdicts changed"
+        f"chapter {report.chapter}: {report.compared} metrics compared, {len(report.drifted)} drifted, "
+        f"{len(report.missing)} missing, {len(report.new)} new, {len(report.skipped)} skipped; "
+        f"{len(report.claims)} claims, {len(changed)} verdicts changed; "
+        f"{report.tables} tables, {len(report.tables_changed)} differences"
     )
-    for entry in report["drifted"]:
-        tolerance = entry["atol"] + entry["rtol"] * abs(entry["baseline"] or 0)
-        out.print(f"  {entry['name']} = {entry['value']}, stored {entry['baseline']} +- {tolerance:.3g}", markup=False)
-    for kind in ("missing", "new"):
-        if names := report[kind]:
-            more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
-            out.print(f"  {kind}: {', '.join(names[:SHOWN])}{more}", markup=False)
-    for claim in changed.values():
-        out.print(f"  {claim['id']}: {claim['verdict']}, stored: {claim['expected']}", markup=False)
+    lines = []
+    for entry in report.drifted:
+        tolerance = entry.atol + entry.rtol * abs(entry.baseline or 0)
+        lines.append(f"{entry.name} = {entry.value}, stored {entry.baseline} +- {tolerance:.3g}")
+    for kind, names in {"missing": report.missing, "new": report.new}.items():
+        more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+        lines += [f"{kind}: {', '.join(names[:SHOWN])}{more}"] if names else []
+    lines += [f"{claim.id}: {claim.verdict or 'missing'}, stored: {claim.expected or 'none'}" for claim in changed]
+    lines += report.tables_changed[:SHOWN]
+    lines += [f"{name} has a baseline, and no such experiment exists" for name in report.unknown]
+    lines += [f"out of date: {text}" for text in report.outdated]
+    for line in lines:
+        out.print(f"  {line}", markup=False)
 
 
 def draw_command(options: argparse.Namespace) -> int:
     """Draw figures and tables again from what is on disk."""
     from dexrepro.plan import select
+    from dexrepro.pool import sentence
     from dexrepro.report.damage import check_result
-    from dexrepro.runner import redraw, sentence
+    from dexrepro.runner import redraw
     from dexrepro.selection import existing, selected
 
     numbers, only, results, _, _ = selected(options.selection)
@@ -338,16 +380,16 @@ def report_command(options: argparse.Namespace) -> int:
 
 
 def new_command(options: argparse.Namespace) -> int:
-    """``dexrepro new controller NAME``."""
+    """``dexrepro new controller NAME [--kind KIND]``."""
     from dexrepro.scaffold import new_controller
 
-    law, test, command = new_controller(options.name, Path())
+    law, test, command = new_controller(options.name, options.kind, Path())
     out.print(f"wrote {law} and {test}; try:\n  pytest {test}\n  {command}", markup=False)
     return OK
 
 
 def render_command(options: argparse.Namespace) -> int:
-    """``dexrepro render [FOLDER | chapter=N] [only=EXPERIMENT] [case=NAME] [format=gif|mp4]``.
+    """``dexrepro render [FOLDER | chapter=N] [only=EXPERIMENT] [case=NAME] [format=gif|mp4] [allow=MODULE,...]``.
 
     Without a folder or an experiment: the film of every experiment that declares one and has a result, where it is
     missing or older than its recording.
@@ -358,7 +400,8 @@ def render_command(options: argparse.Namespace) -> int:
 
     folders = [Path(text) for text in options.selection if "=" not in text]
     words = [text for text in options.selection if "=" in text]
-    numbers, only, results, _, values = selected(words, ("case", "format"))
+    numbers, only, results, _, values = selected(words, ("case", "format", "allow"))
+    allow = [name for name in values.get("allow", "").strip("[]").split(",") if name]
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
         raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
@@ -376,7 +419,7 @@ def render_command(options: argparse.Namespace) -> int:
     if not folders and not films:
         raise InputError(f"no result in {results} has a film; run first: dexrepro run")
     for folder in folders:
-        out.print(str(animation.render(folder, values.get("case"), kind)), markup=False)
+        out.print(str(animation.render(folder, values.get("case"), kind, allow)), markup=False)
     if not folders:
         out.print(f"nothing to render: {len(films)} films are up to date")
     return OK
@@ -384,8 +427,6 @@ def render_command(options: argparse.Namespace) -> int:
 
 def study_command(options: argparse.Namespace) -> int:
     """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=200] [hours=H] [jobs=N hydra/launcher=...]``."""
-    from concurrent.futures.process import BrokenProcessPool
-
     from dexrepro import study
     from dexrepro.selection import selected
 
@@ -396,9 +437,9 @@ def study_command(options: argparse.Namespace) -> int:
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
             try:
-                path = study.run(number, name, samples, results, workers=workers, hours=hours)
-            except BrokenProcessPool:
-                err.print("a process of the study was killed; the same command completes what is missing", markup=False)
+                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update)
+            except study.SamplesFailed as error:
+                err.print(str(error), markup=False)
                 return FAILED
             _print_study(name, path, results)
     return OK
@@ -436,6 +477,8 @@ def _study_jobs(options: argparse.Namespace) -> int:
     selection = ",".join(json.dumps(text) for text in words)
     results = [text for text in words if text.startswith("results=")]
     status = _launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
+    if options.update and status == OK:
+        return study_command(argparse.Namespace(selection=words, update=True))
     for name in names:
         if (path := study.summary_file(name, folder)).exists():
             _print_study(name, path, folder)
@@ -446,7 +489,7 @@ def _study_job(config: Any) -> None:
     from dexrepro.sweep import JobFailed, enter_launch_folder
 
     enter_launch_folder()
-    if study_command(argparse.Namespace(selection=["workers=1", *config.selection])) != OK:
+    if study_command(argparse.Namespace(selection=["workers=1", *config.selection], update=False)) != OK:
         raise JobFailed("a process was killed; the same command completes what is missing")
 
 
@@ -455,7 +498,7 @@ def _print_study(name: str, path: Path, results: Path) -> None:
     from dexrepro.storage import read_json
 
     summary = read_json(path)
-    drawing = studies.save(summary, results / "study" / f"{name}.svg")
+    drawing = studies.save(summary, results / "studies" / f"{name}.svg")
     out.print(f"{name}: {path}, drawn in {drawing}", markup=False)
     for claim, row in summary["claims"].items():
         interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"

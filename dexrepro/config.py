@@ -1,6 +1,6 @@
 """From conf/ and the user's overrides to one resolved, checked configuration a case.
 
-Provenance: each leaf of conf/chapter/N.yaml says on its line where it comes from, in one grammar::
+Provenance: each leaf of conf/chapter/N/EXPERIMENT.yaml says on its line where it comes from, in one grammar::
 
     stiffness: 45   # k_o [N/m] | printed 2.4.1.1
     rest_length: 0.55   # m | chosen: equals the printed initial estimate | 0.5..0.65
@@ -15,6 +15,7 @@ import copy
 import difflib
 import math
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -23,13 +24,16 @@ from typing import Any
 
 import yaml
 from hydra import compose, initialize_config_dir
+from hydra.core.config_store import ConfigStore
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
-SETTINGS = ("only", "figure", "seed", "results", "workers", "force", "quiet", "gui")
+from dexrepro import chapters
+
+SETTINGS = ("only", "figure", "seed", "results", "workers", "case_timeout", "force", "quiet", "gui")
 
 
 class InputError(Exception):
@@ -40,6 +44,19 @@ def config_dir() -> Path:
     """The folder of Hydra configurations: inside an installed wheel, or at the top of a checkout."""
     inside = Path(__file__).parent / "conf"
     return inside if inside.is_dir() else Path(__file__).parent.parent / "conf"
+
+
+def config_files(chapter: str) -> dict[str, Path]:
+    """Where the parameters of a chapter stand: the file of each of its experiments, and of ``shared`` values.
+
+    Those of the book stand in conf/chapter/N; an experiment outside the package has ``config.yaml`` in its own folder,
+    its chapter ``shared.yaml``.
+    """
+    if chapter != chapters.OWN and chapters.is_added(chapter):
+        folder = chapters.load(chapter).folder
+        files = {path.parent.name: path for path in sorted(folder.glob("*/config.yaml"))}
+        return {"shared": shared, **files} if (shared := folder / "shared.yaml").exists() else files
+    return {path.stem: path for path in sorted((config_dir() / "chapter" / chapter).glob("*.yaml"))}
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:
@@ -122,10 +139,15 @@ def leaves_with_comments(text: str) -> Iterator[tuple[str, str, str]]:
 
 
 def provenance(chapter: str) -> dict[str, Provenance]:
-    """Provenance of every leaf of conf/chapter/N.yaml that states one."""
-    text = (config_dir() / "chapter" / f"{chapter}.yaml").read_text()
-    found = ((key, parse_provenance(comment)) for key, _, comment in leaves_with_comments(text))
-    return {key: item for key, item in found if item}
+    """Provenance of every leaf of a chapter's configuration that states one."""
+    return {key: found for key, _, comment in commented_leaves(chapter) if (found := parse_provenance(comment))}
+
+
+def commented_leaves(chapter: str) -> Iterator[tuple[str, str, str]]:
+    """(dotted key, value text, comment) of every leaf of a chapter's configuration."""
+    for name, path in config_files(chapter).items():
+        for key, value, comment in leaves_with_comments(path.read_text("utf-8")):
+            yield f"{name}.{key}", value, comment
 
 
 # ------------------------------------------------------------------------------------------------------- composing
@@ -140,6 +162,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         raise InputError(
             f"'{own[0]}' needs --config-dir FOLDER, the folder that holds {own[0][1:].replace('=', '/')}.yaml"
         )
+    _offer(chapter)
     shipped = _shipped(str(config_dir()), chapter, _changed(chapter))
     search = [f"hydra.searchpath=['file://{Path(extra_dir).resolve()}']"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
@@ -148,7 +171,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         if not overrides and not extra_dir:
             return copy.deepcopy(shipped)
         composed = _compose([f"chapter='{chapter}'", *overrides, *search])
-    except (HydraException, OmegaConfBaseException) as error:
+    except (HydraException, OmegaConfBaseException, ValueError, TypeError) as error:
         raise InputError(" ".join(str(error.__cause__ or error).split())) from error
     if unknown := [key for key in composed if key not in shipped]:
         if not extra_dir:
@@ -179,9 +202,19 @@ def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
     return keys
 
 
+def _offer(chapter: str) -> None:
+    """Let Hydra find the configuration of a chapter outside the package."""
+    if chapter == chapters.OWN or not chapters.is_added(chapter):
+        return
+    for name, path in config_files(chapter).items():
+        node = OmegaConf.create({name: yaml.safe_load(path.read_text("utf-8"))})
+        ConfigStore.instance().store(f"{name}.yaml", node, group=f"chapter/{chapter}", package="_global_")
+    defaults = {"defaults": [f"{chapter}/{name}" for name in config_files(chapter)]}
+    ConfigStore.instance().store(f"{chapter}.yaml", defaults, group="chapter", package="_global_")
+
+
 def _changed(chapter: str) -> float:
-    files = config_dir() / "config.yaml", config_dir() / "chapter" / f"{chapter}.yaml"
-    return max(path.stat().st_mtime for path in files)
+    return max(path.stat().st_mtime for path in (config_dir() / "config.yaml", *config_files(chapter).values()))
 
 
 @lru_cache(maxsize=16)
@@ -216,16 +249,20 @@ def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> Non
 
 def _keys(node: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
     for key, value in node.items():
-        yield prefix + key
+        yield f"{prefix}{key}"
         if isinstance(value, Mapping):
             yield from _keys(value, f"{prefix}{key}.")
 
 
 def check_settings(composed: Mapping[str, Any]) -> None:
     """Refuse settings that are no experiment's and of which nothing can be made."""
+    if removed := [key for key in SETTINGS if key not in composed]:
+        raise InputError(f"'{removed[0]}' cannot be left out; give it a value instead")
     seed, results, figure = composed["seed"], composed["results"], composed["figure"]
-    if not _whole(seed) or seed < 0:
-        raise InputError(f"seed = {seed} is not allowed: it must be a whole number of 0 or greater")
+    if not _whole(seed) or not 0 <= seed < 1 << 64:
+        raise InputError(
+            f"seed = {str(seed)[:40]} is not allowed: it must be a whole number of 0 or greater, below 2^64"
+        )
     if not isinstance(results, str) or not results:
         raise InputError(f"results = {results!r} is not allowed: it must be the name of a folder")
     if isinstance(figure, list):
@@ -233,6 +270,9 @@ def check_settings(composed: Mapping[str, Any]) -> None:
     scene = composed.get("scene")
     if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]*", name := str(scene.get("name"))):
         raise InputError(f"scene.name = {name} is not allowed: it names a folder; use letters, digits, '_' and '-'")
+    timeout = composed["case_timeout"]
+    if timeout is not None and not (_number(timeout) and 0 < timeout < math.inf):
+        raise InputError(f"case_timeout = {timeout} is not allowed: it must be a number of seconds greater than 0")
     for key in ("force", "quiet", "gui"):
         if not isinstance(composed[key], bool):
             raise InputError(f"{key} = {composed[key]} is not allowed: it must be true or false")
@@ -253,6 +293,10 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
             where = f"{experiment}.cases.{name}".rstrip(".")
             raise InputError(f"{where} = {case} is not allowed: cases are names with what each changes")
     for name, overrides in _expanded(given or {"default": {}}, names, experiment, base):
+        if name == "summary" or not re.fullmatch(r"[\w+-]+", name):
+            raise InputError(
+                f"{experiment}.cases: '{name}' is not allowed as a name: use letters, digits and '_', and not 'summary'"
+            )
         merged = copy.deepcopy(base)
         for key, value in overrides.items():
             _assign(merged, key, copy.deepcopy(value), f"{experiment}.cases.{name}")
@@ -277,12 +321,15 @@ def _expanded(
     for name, overrides in cases.items():
         overrides = overrides or {}
         if "each" not in overrides:
-            yield name, overrides
+            yield str(name), overrides
             continue
-        key = overrides["each"]
+        key = str(overrides["each"])
         rest = {other: value for other, value in overrides.items() if other != "each"}
         values: Any = _resolve(names, experiment, base)
         for part in key.split("."):
+            if not isinstance(values, Mapping) or part not in values:
+                known = [name for name, value in leaves(base) if not name.endswith("_target_")]
+                raise InputError(f"{experiment}.cases.{name}.each: unknown key '{key}': {nearest(key, known)}")
             values = values[part]
         for value in values if isinstance(values, list) else [values]:
             yield f"{name}{_label(value)}", {**rest, key: value}
@@ -375,8 +422,8 @@ def check_values(config: Mapping[str, Any], where: str) -> None:
         name = next((part for part in reversed(key.split(".")) if not part.isdigit()), key)
         if not isinstance(value, int | float) or isinstance(value, bool):
             continue
-        if not math.isfinite(value):
-            raise InputError(f"{where}.{key} = {value} is not allowed: it must be a finite number")
+        if not abs(value) < math.inf or abs(value) > sys.float_info.max:
+            raise InputError(f"{where}.{key} = {str(value)[:20]} is not allowed: it must be a finite number")
         if _POSITIVE.search(name) and value <= 0:
             raise InputError(f"{where}.{key} = {value} is not allowed: it must be greater than 0")
         if _NOT_NEGATIVE.search(name) and value < 0:

@@ -13,7 +13,6 @@ import json
 import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import as_completed
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -24,6 +23,9 @@ from scipy import stats
 
 from dexrepro import chapters
 from dexrepro.baselines import baseline_dir
+from dexrepro.case import generator, live
+from dexrepro.case import run as run_case
+from dexrepro.claims import Claim, robustness
 from dexrepro.config import (
     InputError,
     Provenance,
@@ -33,10 +35,15 @@ from dexrepro.config import (
     provenance,
     resolved_block,
 )
-from dexrepro.experiment import Claim, Config, Metrics
-from dexrepro.pool import pool
-from dexrepro.runner import flat, generator, live, summarise
+from dexrepro.experiment import Config, Metrics
+from dexrepro.measures import binomial_interval
+from dexrepro.pool import COMPLETES, Failure, Pool
+from dexrepro.runner import flat, summarise
 from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
+
+
+class SamplesFailed(Exception):
+    """Samples of a study are missing; the sentence says why, and the others are stored."""
 
 
 def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list[str]:
@@ -45,6 +52,8 @@ def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list
     by_id = {item.id: item for item in loaded.claims if item.predicate}
     if claim is None:
         about = {item.experiment for item in by_id.values()}
+        if without := [name for name in only if name not in about]:
+            raise InputError(f"{', '.join(without)} of chapter {chapter}: there is no claim that a study could test")
         return [e.name for e in loaded.experiments if e.name in about and (not only or e.name in only)]
     if claim not in by_id:
         raise InputError(f"unknown claim '{claim}' in chapter {chapter}: {nearest(claim, by_id)}")
@@ -110,8 +119,7 @@ def evaluate(chapter: str, experiment: str, index: int) -> dict[str, Any]:
     for case in _cases_of(claims, cases):
         try:
             config = live({**cases[case], "perturbation": 0.0, "seed": seed, "case": case})
-            recording = definition.module.simulate(config, lambda purpose: generator(seed, experiment, purpose))
-            metrics[case] = definition.module.measure(recording, config)
+            metrics[case] = run_case(definition, config, seed)[1]
         except Exception as problem:
             errors.append(f"{case}: {type(problem).__name__}: {problem}")
     if len(metrics) == len(cases):
@@ -152,31 +160,48 @@ def run(
     *,
     workers: int | None = None,
     hours: float | None = None,
+    update: bool = False,
 ) -> Path:
-    """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path."""
-    target = summary_file(experiment, results)
-    for folder in (target.parent, _locks(results)):
+    """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path.
+
+    ``update`` renews the study that is shipped. Raises InputError where a summary of more samples, of another
+    configuration, would be replaced, and SamplesFailed, at the end, where a sample could not be made.
+    """
+    target = summary_file(experiment, results, update)
+    for folder in (target.parent, _folder(results)):
         folder.mkdir(parents=True, exist_ok=True)
     done = _kept(chapter, experiment, results)
     missing = [index for index in range(samples) if index not in done]
+    if (before := _size(target)) > len(done) + len(missing):
+        raise InputError(
+            f"samples = {samples} is not allowed: {target} holds {before} samples of another configuration, which "
+            f"fewer do not replace; ask for {before} or more, or for another folder with results=DIR"
+        )
     deadline = time.time() + 3600 * hours if hours else float("inf")
-    with pool(workers) as submit:
-        for future in as_completed([submit(contribute, chapter, experiment, i, results, deadline) for i in missing]):
-            future.result()
-    with locked(_locks(results)):  # who ends last sees every sample
-        entries = _kept(chapter, experiment, results).values()
-        write_text(_lines(target), "".join(map(_line, entries)))
-        write_json(target, summary(chapter, experiment, list(entries)))
+    with Pool(workers) as pool:
+        for index in missing:
+            pool.add(index, contribute, chapter, experiment, index, results, deadline)
+        failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
+    with locked(_folder(results)):  # who ends last sees every sample
+        entries = list(_kept(chapter, experiment, results).values())
+        if len(entries) >= _size(target):  # fewer where the hours are over
+            write_text(_lines(target), "".join(map(_line, entries)))
+            write_json(target, summary(chapter, experiment, entries))
+    if failed:
+        index, reason = failed[0]
+        more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
+        reason = reason.removesuffix(f"; {COMPLETES}")
+        raise SamplesFailed(f"sample {index}{more} of {experiment} failed: {reason}; {COMPLETES}")
     return target
 
 
 def contribute(chapter: str, experiment: str, index: int, results: Path, deadline: float) -> None:
     """Evaluate one sample and add its line, unless another process does or has done so, or it is too late."""
-    with claimed(_locks(results), f"{experiment}.{index}", wait=False) as mine:
+    with claimed(_folder(results), f"{experiment}.{index}", wait=False) as mine:
         if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index):
             return
         line = _line(finite(evaluate(chapter, experiment, index)))
-        with locked(_locks(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
+        with locked(_folder(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
             file.seek(max(file.tell() - 1, 0))
             cut_short = file.read(1) not in (b"", b"\n")
             file.write(b"\n" * cut_short + line.encode())
@@ -185,8 +210,8 @@ def contribute(chapter: str, experiment: str, index: int, results: Path, deadlin
 def _kept(chapter: str, experiment: str, results: Path, only: int | None = None) -> dict[int, dict[str, Any]]:
     """The samples there are, shipped or made here, of the present configuration and claims, in the order of index."""
     found, claims = {}, chapters.load(chapter).claims_of(experiment)
-    for folder in (baseline_dir(), results / "baselines"):
-        for entry in _read(_lines(folder / "study" / f"{experiment}.json")):
+    for update in (True, False):
+        for entry in _read(_lines(summary_file(experiment, results, update))):
             if only in (None, entry["index"]):
                 values, block = draw(chapter, experiment, entry["index"])
                 if entry["digest"] == _digest(claims, block, values["seed"]):
@@ -194,8 +219,12 @@ def _kept(chapter: str, experiment: str, results: Path, only: int | None = None)
     return dict(sorted(found.items()))
 
 
-def _locks(results: Path) -> Path:
-    return results / "study"
+def _folder(results: Path) -> Path:
+    return results / "studies"
+
+
+def _size(summary: Path) -> int:
+    return int(read_json(summary)["samples"]) if summary.exists() else 0
 
 
 def _lines(summary: Path) -> Path:
@@ -206,9 +235,9 @@ def _line(entry: Mapping[str, Any]) -> str:
     return json.dumps(entry) + "\n"
 
 
-def summary_file(experiment: str, results: Path) -> Path:
-    """Where the summary of a study is kept: in a checkout, beside the stored baselines."""
-    return results / "baselines" / "study" / f"{experiment}.json"
+def summary_file(experiment: str, results: Path, shipped: bool = False) -> Path:
+    """Where the summary of a study is kept: among the user's results, or beside the baselines that are shipped."""
+    return (baseline_dir() / "study" if shipped else _folder(results)) / f"{experiment}.json"
 
 
 def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -220,7 +249,7 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
             continue
         margins = np.array([margin for margin, _ in pairs])
         holds = int(np.sum(margins > 0))
-        low, high = stats.binomtest(holds, len(pairs)).proportion_ci(method="wilson")
+        low, high = binomial_interval(holds, len(pairs))
         parameter, correlation = _most_influential(margins, [values for _, values in pairs])
         claims[claim.id] = {
             "samples": len(pairs), "holds": holds, "share": holds / len(pairs), "low": low, "high": high,
@@ -234,9 +263,18 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
 
 
 def stored(results: Path) -> list[dict[str, Any]]:
-    """Every study there is: those shipped, and in their place those made again in the user's own results."""
-    paths = [*(baseline_dir() / "study").glob("*.json"), *(results / "baselines" / "study").glob("*.json")]
-    return [read_json(path) for _, path in sorted({path.name: path for path in paths}.items())]
+    """Every study there is: of those shipped and those made here, the one of more samples; ours where equal."""
+    paths = [*(baseline_dir() / "study").glob("*.json"), *_folder(results).glob("*.json")]
+    return [read_json(path) for _, path in sorted({path.name: path for path in sorted(paths, key=_size)}.items())]
+
+
+def robustness_of(chapter: str, results: Path = Path("results")) -> dict[str, str]:
+    """What the studies show each claim of a chapter to be: "robust", "fragile" or "open"."""
+    found: dict[str, str] = {}
+    for item in stored(results):
+        if item["chapter"] == chapter:
+            found |= {key: robustness(entry["holds"], entry["samples"]) for key, entry in item["claims"].items()}
+    return found
 
 
 def _most_influential(margins: Any, values: Sequence[Mapping[str, float]]) -> tuple[str | None, float | None]:

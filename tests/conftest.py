@@ -2,48 +2,64 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 import dexrepro
-from dexrepro import chapters, config, plan
+from dexrepro import chapters
 
 ROOT = Path(dexrepro.__file__).parent.parent
 TOY = Path(__file__).parent / "toy"
 
 
-@pytest.fixture
-def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    """Make chapter 90 the only chapter, work in an empty folder, and return that folder."""
-    monkeypatch.setattr(config, "config_dir", lambda: TOY / "conf")
-    monkeypatch.setattr(chapters, "__path__", [str(TOY)])
-    monkeypatch.chdir(tmp_path)
-    for function in (chapters.numbers, chapters.load, plan.source_digest):
-        function.cache_clear()
-    yield tmp_path
-    for function in (chapters.numbers, chapters.load, plan.source_digest):
-        function.cache_clear()
-    for name in [name for name in sys.modules if name.startswith("dexrepro.chapters.chapter90")]:
-        del sys.modules[name]
+@contextlib.contextmanager
+def toy_chapter(folder: Path, book: Path) -> Iterator[Path]:
+    """Make chapter 90 the only chapter, here and in commands started from here; work in a folder."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(chapters.ADDED, str(shutil.copytree(TOY, book)))
+        patch.chdir(folder)
+        chapters.forget()
+        yield folder
+    chapters.forget()
 
 
 @pytest.fixture
-def toy_tree(tmp_path: Path) -> Path:
-    """A folder with a checkout whose only chapter is 90, for commands of a shell and the processes they start."""
-    package = tmp_path / "dexrepro"
-    (package / "chapters").mkdir(parents=True)
-    for path in (ROOT / "dexrepro").iterdir():
-        if path.name not in ("chapters", "__pycache__"):
-            (package / path.name).symlink_to(path)
-    (package / "chapters/__init__.py").symlink_to(ROOT / "dexrepro/chapters/__init__.py")
-    (package / "chapters/chapter90").symlink_to(TOY / "chapter90")
-    (tmp_path / "conf").symlink_to(TOY / "conf")
-    return tmp_path
+def toy_book(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A book of one tiny chapter, 90, outside the package."""
+    return tmp_path_factory.mktemp("toy") / "book"
+
+
+@pytest.fixture
+def toy(tmp_path: Path, toy_book: Path) -> Iterator[Path]:
+    """Chapter 90 is the only one; the folder in which one works is empty."""
+    with toy_chapter(tmp_path, toy_book) as folder:
+        yield folder
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A report of chapter 90, with a film, built once for the tests of a module."""
+    from PIL import Image
+
+    from dexrepro.plan import plan_chapter
+    from dexrepro.report import page
+    from dexrepro.runner import run_plans
+
+    with toy_chapter(tmp_path_factory.mktemp("work"), tmp_path_factory.mktemp("toy") / "book") as folder:
+        plans, _ = plan_chapter("90")
+        run_plans(plans, workers=1, force=False)
+        films = folder / "results/chapter90/decay/animation"
+        films.mkdir()
+        for name in ("plain.gif", "plain.png"):
+            Image.new("RGB", (80, 33), "white").save(films / name)
+        yield page.build(Path("results")).parent.resolve()
 
 
 Shell = Callable[..., subprocess.CompletedProcess[str]]

@@ -8,11 +8,12 @@ import pytest
 
 from dexrepro import chapters
 from dexrepro.config import (
+    SETTINGS,
     InputError,
     Provenance,
     _names,
+    commented_leaves,
     compose_chapter,
-    config_dir,
     experiment_cases,
     leaves_with_comments,
     parse_provenance,
@@ -44,10 +45,9 @@ def test_leaves_are_found_with_their_dotted_key() -> None:
 
 @pytest.mark.parametrize("chapter", CHAPTERS)
 def test_every_leaf_states_where_it_comes_from(chapter: str) -> None:
-    text = (config_dir() / "chapter" / f"{chapter}.yaml").read_text()
     silent = [
         key
-        for key, value, comment in leaves_with_comments(text)
+        for key, value, comment in commented_leaves(chapter)
         if not key.rpartition(".")[2].startswith("_") and not value.startswith("${") and not parse_provenance(comment)
     ]
     assert not silent
@@ -55,8 +55,7 @@ def test_every_leaf_states_where_it_comes_from(chapter: str) -> None:
 
 @pytest.mark.parametrize("chapter", CHAPTERS)
 def test_a_range_contains_the_value_it_is_given_for(chapter: str) -> None:
-    text = (config_dir() / "chapter" / f"{chapter}.yaml").read_text()
-    for key, value, comment in leaves_with_comments(text):
+    for key, value, comment in commented_leaves(chapter):
         source = parse_provenance(comment)
         if source and source.low is not None and source.high is not None:
             assert source.low < source.high, key
@@ -79,18 +78,7 @@ def test_the_parts_of_a_chapter_fit_together(chapter: str) -> None:
     loaded = chapters.load(chapter)
     composed = compose_chapter(chapter)
     names = {experiment.name for experiment in loaded.experiments}
-    blocks = set(composed) - {
-        "shared",
-        "only",
-        "figure",
-        "seed",
-        "results",
-        "workers",
-        "force",
-        "quiet",
-        "gui",
-        "hydra",
-    }
+    blocks = set(composed) - {"shared", "hydra", *SETTINGS}
     assert blocks == names
     assert len({claim.id for claim in loaded.claims}) == len(loaded.claims)
     figures = [figure for experiment in loaded.experiments for figure in experiment.figures]

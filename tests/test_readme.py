@@ -14,9 +14,7 @@ import pytest
 from conftest import ROOT, Shell
 from test_cli import SHORT
 
-from dexrepro import chapters
-from dexrepro.baselines import read
-from dexrepro.experiment import AFTER_CORRECTION, NOT_REPRODUCED, NOT_TESTABLE, REPRODUCED
+from dexrepro import chapters, scoreboard
 
 README = (ROOT / "README.md").read_text()
 
@@ -111,18 +109,42 @@ def test_own_demonstrations_take_the_place_of_the_synthetic(shell: Shell, tmp_pa
     assert list((folder / "figures").glob("*.png"))
 
 
-def test_the_own_experiment_runs(shell: Shell, tmp_path: Path) -> None:
-    for folder in ("dexrepro", "conf"):
-        shutil.copytree(ROOT / folder, tmp_path / folder)
-    chapter = tmp_path / "dexrepro/chapters/chapter2"
-    (chapter / "push.py").write_text(block("python", '"2.Z"'))
-    with open(chapter / "__init__.py", "a") as file:
-        file.write("\nfrom dexrepro.chapters.chapter2 import push\n\nEXPERIMENTS += (Experiment.of(push),)\n")
-    with open(tmp_path / "conf/chapter/2.yaml", "a") as file:
-        file.write(block("yaml", "push:"))
-    done = shell("PYTHONPATH=. python -m dexrepro run figure=2.Z")
+def own_experiment(home: Path) -> None:
+    """The experiment of the README, in the folder that it names."""
+    (home / "lab/push").mkdir(parents=True)
+    for language, name in (
+        ("python", "experiment.py"),
+        ("python", "figures.py"),
+        ("python", "claims.py"),
+        ("yaml", "config.yaml"),
+    ):
+        (home / "lab/push" / name).write_text(block(language, f"# lab/push/{name}"))
+
+
+def test_the_own_experiment_is_run_checked_studied_drawn_and_reported(shell: Shell, tmp_path: Path) -> None:
+    own_experiment(tmp_path)
+    for command in block("sh", "--experiments lab").splitlines():
+        done = shell(command)
+        assert done.returncode == 0, done.stderr
+    assert list((tmp_path / "results/chapterlab/push/figures").glob("fig_lab_*.png"))
+    assert "lab.01" in json.loads((tmp_path / "lab/push/baseline.json").read_text())["claims"]
+    assert "push" in (tmp_path / "results/report/chapterlab.html").read_text()
+    listed = json.loads(shell("dexrepro list --json --experiments lab").stdout)["chapters"]
+    assert [chapter["chapter"] for chapter in listed] == [*chapters.numbers(), "lab"]
+
+
+def test_another_book_is_another_folder(shell: Shell, tmp_path: Path) -> None:
+    own_experiment(tmp_path / "other")
+    (tmp_path / "other/lab").rename(tmp_path / "other/chapter9")
+    (tmp_path / "other/book.yaml").write_text("title: Pushing Arms\nauthors: A. Reader\n")
+    (tmp_path / "other/chapter9/__init__.py").write_text('TITLE = "Pushes"\n')
+    listed = json.loads(shell("dexrepro list --json --experiments other").stdout)["chapters"]
+    assert [(chapter["chapter"], chapter["title"]) for chapter in listed] == [("9", "Pushes")]
+    done = shell("dexrepro run --experiments other && dexrepro report --experiments other")
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "results/chapter2/push/figures/fig_2_Z.png").exists()
+    page = (tmp_path / "results/report/index.html").read_text()
+    assert "Pushing Arms" in page
+    assert "Teleoperation" not in page
 
 
 COMMANDS = [line.partition("#")[0].strip() for line in block("sh", "dexrepro list").splitlines() if "…" not in line]
@@ -166,7 +188,7 @@ def test_every_study_counts(shell: Shell, tmp_path: Path, command: str) -> None:
     done = shell(few)
     assert done.returncode == 0, done.stderr
     assert "C7.01: holds in" in done.stdout
-    assert json.loads(next(tmp_path.glob("results/baselines/study/*.json")).read_text())["samples"] == 2
+    assert json.loads(next(tmp_path.glob("results/studies/*.json")).read_text())["samples"] == 2
 
 
 def test_the_script_for_slurm_runs_a_sweep_like_that_of_the_readme() -> None:
@@ -177,9 +199,4 @@ def test_the_script_for_slurm_runs_a_sweep_like_that_of_the_readme() -> None:
 
 
 def test_the_table_counts_the_stored_verdicts() -> None:
-    for number in chapters.numbers():
-        row = re.search(rf"^\| {number} \|.*\|$", README, re.MULTILINE)[0]
-        stored = read(number)["claims"]
-        verdicts = [stored.get(c.id, NOT_TESTABLE) for c in chapters.load(number).claims if c.source == "book"]
-        counted = [verdicts.count(v) for v in (REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED, NOT_TESTABLE)]
-        assert [int(cell) for cell in row.strip("| ").split("|")[-4:]] == counted, number
+    assert scoreboard.markdown() in README, "dexrepro list --markdown prints the table as it must stand"

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+import os
+import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from conftest import ROOT
 
 from dexrepro import study
+from dexrepro.claims import Claim, less
 from dexrepro.config import InputError
-from dexrepro.experiment import Claim, less
-from dexrepro.pool import _submit_here
+from dexrepro.pool import Pool
 from dexrepro.storage import read_json
 
 RESULTS = Path("results")
@@ -67,7 +71,7 @@ def test_a_study_counts_how_often_each_claim_holds_and_what_it_follows(folder: P
 
 def test_a_study_resumes_and_survives_a_line_cut_short(folder: Path) -> None:
     study.run("90", "decay", 4, RESULTS, workers=1)
-    lines = RESULTS / "baselines/study/decay.jsonl"
+    lines = RESULTS / "studies/decay.jsonl"
     kept = lines.read_text().splitlines(keepends=True)
     lines.write_text("".join(kept[:3]) + kept[3][:20])
     study.run("90", "decay", 6, RESULTS, workers=1)
@@ -84,28 +88,75 @@ def test_shipped_samples_count_and_those_of_another_configuration_do_not(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     study.run("90", "decay", 3, RESULTS, workers=1)
-    (RESULTS / "baselines").rename(folder / "shipped")
+    (folder / "shipped").mkdir()
+    (RESULTS / "studies").rename(folder / "shipped/study")
     evaluated: list[int] = []
     evaluate = study.evaluate
-    monkeypatch.setattr(study, "pool", lambda workers: nullcontext(_submit_here))
+    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
     monkeypatch.setattr(study, "evaluate", lambda *which: evaluated.append(which[-1]) or evaluate(*which))
     study.run("90", "decay", 5, RESULTS)
     assert evaluated == [3, 4]
     narrower = {key: replace(origin, high=1.0) for key, origin in study.parameters("90", "decay").items()}
     monkeypatch.setattr(study, "parameters", lambda *_: narrower)
-    assert read_json(study.run("90", "decay", 2, RESULTS))["samples"] == 2
+    assert read_json(study.run("90", "decay", 2, Path("other")))["samples"] == 2
     assert evaluated[2:] == [0, 1]
 
 
-def test_a_study_made_again_takes_the_place_of_the_one_shipped(folder: Path) -> None:
+def test_a_study_never_becomes_smaller(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = study.run("90", "decay", 3, RESULTS, workers=1)
+    lines, narrower = (RESULTS / "studies/decay.jsonl").read_text(), study.parameters("90", "decay")
+    narrower = {key: replace(origin, high=1.0) for key, origin in narrower.items()}
+    monkeypatch.setattr(study, "parameters", lambda *_: narrower)
+    with pytest.raises(InputError, match=r"samples = 2 is not allowed: .* holds 3 samples of another configuration"):
+        study.run("90", "decay", 2, RESULTS, workers=1)
+    assert study.run("90", "decay", 3, RESULTS, workers=1, hours=1e-9) == path  # no time for any
+    assert read_json(path)["samples"] == 3
+    assert read_json(path)["varied"]["decay.start"] == [0.5, 2]
+    assert (RESULTS / "studies/decay.jsonl").read_text() == lines
+    assert read_json(study.run("90", "decay", 3, RESULTS, workers=1))["varied"]["decay.start"] == [0.5, 1]
+
+
+def test_only_an_update_writes_what_is_shipped(folder: Path) -> None:
+    study.run("90", "decay", 2, RESULTS, workers=1)
+    assert not (folder / "shipped").exists()
+    path = study.run("90", "decay", 3, RESULTS, workers=1, update=True)
+    assert path == folder / "shipped/study/decay.json"
+    assert read_json(path)["samples"] == 3
+    assert len(path.with_suffix(".jsonl").read_text().splitlines()) == 3
+
+
+def test_of_two_studies_the_larger_is_shown_and_ours_where_equal(folder: Path) -> None:
     path = study.run("90", "decay", 4, RESULTS, workers=1)
-    assert path == RESULTS / "baselines/study/decay.json"
+    assert path == RESULTS / "studies/decay.json"
     (folder / "shipped/study").mkdir(parents=True)
-    for name, samples in (("decay", 3), ("other", 7)):
-        (folder / f"shipped/study/{name}.json").write_text(f'{{"samples": {samples}}}')
-    assert [item["samples"] for item in study.stored(RESULTS)] == [4, 7]
+    for samples, shown in ((3, 4), (4, 4), (9, 9)):
+        for name in ("decay", "other"):
+            (folder / f"shipped/study/{name}.json").write_text(f'{{"samples": {samples}}}')
+        decay, other = study.stored(RESULTS)
+        assert decay["samples"] == shown
+        assert ("claims" in decay) == (samples < 9)
+        assert other["samples"] == samples
 
 
 def test_an_unknown_claim_is_refused(folder: Path) -> None:
     with pytest.raises(InputError, match=r"did you mean 'C90.01'"):
         study.experiments_of("90", [], "C90.1")
+
+
+@pytest.mark.slow
+def test_a_study_in_a_checkout_changes_no_tracked_file(tmp_path: Path) -> None:
+    git = ["git", "-C", str(tmp_path), "-c", "user.name=test", "-c", "user.email=test"]
+    listed = subprocess.run(["git", "-C", str(ROOT), "ls-files", "-z"], capture_output=True, text=True, check=False)
+    if listed.returncode:
+        pytest.skip("not a checkout")
+    for name in filter(None, listed.stdout.split("\0")):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(ROOT / name, tmp_path / name)
+    for arguments in (["init", "-q"], ["add", "-A"], ["commit", "-qm", "as it is"]):
+        subprocess.run([*git, *arguments], check=True)
+    command = [sys.executable, "-m", "dexrepro", "study", "chapter=7", "claim=C7.01", "samples=4", "workers=1"]
+    env = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False, timeout=600)
+    assert done.returncode == 0, done.stderr
+    assert list(tmp_path.glob("results/studies/*.json"))
+    assert subprocess.run([*git, "status", "--porcelain"], capture_output=True, text=True, check=True).stdout == ""

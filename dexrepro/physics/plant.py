@@ -16,12 +16,21 @@ import pybullet as bullet
 from scipy.spatial.transform import Rotation
 
 from dexrepro.arrays import Array
+from dexrepro.control.contract import Command
 from dexrepro.physics.loading import connect, disconnect, lighter, load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import forward, jacobian
 from dexrepro.robots.planar import PlanarTip
 from dexrepro.robots.rotations import rotated
+
+
+class NotTorque(ValueError):
+    """What a law gave is no torque of its arm; the sentence shows the value."""
+
+
+class NotFinite(NotTorque):
+    """A law has become undefined."""
 
 
 class Point:
@@ -117,9 +126,9 @@ class Sense:
 
 
 Torque = Sequence[float] | Array
-Answer = Torque | tuple[Torque, Torque]
-Command = Answer | Callable[[Sense], Answer]
-Controller = Callable[[Sense], Command]
+Answer = Torque | tuple[Torque, Torque] | Command
+Reply = Answer | Callable[[Sense], Answer]
+Controller = Callable[[Sense], Reply]
 """What drives an arm: joint torques, a tuple (torque, damping), or an inner loop; see ``World.run``."""
 
 
@@ -242,10 +251,21 @@ class SimulatedArm(Point):
         return sense
 
     def command(self, torque: Torque, damping: Torque | None, step: float) -> None:
-        """Set this step's joint torque [N m], with damping [N m s/rad] applied implicitly, within the effort limits."""
+        """Set this step's joint torque [N m], with damping [N m s/rad] applied implicitly, within the effort limits.
+
+        Raises NotTorque.
+        """
         if damping is not None:
             torque = self._damped(np.asarray(torque, dtype=float), damping, step)
         torque = torque.tolist() if isinstance(torque, np.ndarray) else torque
+        try:  # a sum is cheap and is not finite if any of its terms is not
+            finite, right = -np.inf < sum(torque) < np.inf, len(torque) == self.dof
+        except TypeError:
+            finite = right = False
+        if not (finite and right):
+            self.torque = torque if right else self._zeros
+            kind = NotFinite if right else NotTorque
+            raise kind(f"it gave {str(torque)[:80]}, and a torque is {self.dof} finite numbers [N m]")
         if self.limits is not None:
             torque = [-top if t < -top else top if t > top else t for t, top in zip(torque, self.limits)]
         self.torque = torque

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from dexrepro import chapters
-from dexrepro.config import InputError, nearest
+from dexrepro.case import live, refuse_foreign, targets
+from dexrepro.config import InputError, compose_chapter, nearest
 from dexrepro.experiment import Config, Experiment, Film, Recording
 from dexrepro.physics import rendering
 from dexrepro.physics.world import World
+from dexrepro.recordings import load_recording
 from dexrepro.report import style
 from dexrepro.report.damage import check_result
-from dexrepro.runner import live
-from dexrepro.storage import load_recording, read_json, read_yaml
+from dexrepro.storage import read_json, read_yaml
 
 SIZE = (400, 330)
 FRAMES = 60  # at the most
@@ -29,19 +29,19 @@ COLOURS = 96
 MARGIN = 24  # pixels above and below the line that marks the instant
 
 
-def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
+def render(folder: Path, case: str | None = None, kind: str = "gif", allow: Sequence[str] = ()) -> Path:
     """Write ``animation/<case>.<kind>`` and a still ``<case>.png`` into a result folder; returns the animation's path.
 
     The module's ``FILM`` says which case is shown, how it is looked at and what is drawn alongside; another case is
-    shown in the same way. Raises InputError where there is no result or a damaged one, no scene, no such
-    case, or no encoder for MP4.
+    shown in the same way. A result is data: of what its config.yaml names, only what this package's library or its
+    configuration has is built, and what the modules ``allow`` hold. Raises InputError where there is no result, a
+    damaged one or one that names other code, no scene, no such case, or no encoder for MP4.
     """
     if not (folder / "run.json").exists():
         raise InputError(f"{folder} holds no result (no run.json)")
-    check_result(folder, "config.yaml", series=True)
+    experiment = check_result(folder, "config.yaml", series=True)
     run = read_json(folder / "run.json")
-    experiment = chapters.load(run["chapter"]).experiment(run["experiment"])
-    if not experiment.has("scene"):
+    if not experiment.function("scene"):
         raise InputError(f"experiment '{experiment.name}' has no scene to render")
     if kind == "mp4" and not shutil.which("ffmpeg"):
         raise InputError("format = mp4 is not allowed: it needs the program ffmpeg; use format=gif")
@@ -50,10 +50,18 @@ def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
         raise InputError(f"unknown case '{case}' of {experiment.name}: {nearest(case, cases)}")
     chosen = case or (experiment.film.case if experiment.film and experiment.film.case in cases else None)
     recording, chosen = _recording(folder, experiment, [chosen] if chosen else list(cases))
-    raw = read_yaml(folder / "config.yaml")["cases"][chosen]
+    raw = read_yaml(folder / "config.yaml").get("cases", {}).get(chosen)
+    if not isinstance(raw, dict):
+        raise InputError(f"{folder / 'config.yaml'} has no configuration of the case '{chosen}'")
     target = folder / "animation" / f"{chosen}.{kind}"
     target.parent.mkdir(exist_ok=True)
     raw |= {"law": None} if "law" in raw else {}  # a scene needs none, and the user's may be in another folder
+    ours = set(targets(compose_chapter(run["chapter"])))
+    refuse_foreign(
+        {"cases": {chosen: raw}},
+        str(folder / "config.yaml"),
+        lambda target: target in ours or any(target.startswith(f"{module}.") for module in allow),
+    )
     frames = list(_frames(experiment, live(raw), recording))
     frames[len(frames) // 2].save(target.with_suffix(".png"), optimize=True)
     _write_gif(frames, target) if kind == "gif" else _write_mp4(frames, target)
@@ -70,13 +78,13 @@ def film_of(folder: Path, experiment: Experiment) -> Path | None:
 
 def up_to_date(film: Path, experiment: Experiment) -> bool:
     """Whether a film is younger than its recording and than the code that shows it, the chapter's included."""
-    code = [Path(__file__), Path(rendering.__file__), *Path(str(experiment.module.__file__)).parent.glob("*.py")]
+    code = [Path(__file__), Path(rendering.__file__), *experiment.folder.parent.rglob("*.py")]
     sources = [film.parent.parent / "series" / f"{film.stem}.csv.gz", *code]
     return film.exists() and film.stat().st_mtime >= max(path.stat().st_mtime for path in sources)
 
 
 def _recording(folder: Path, experiment: Experiment, cases: list[str]) -> tuple[Recording, str]:
-    staged = experiment.has("stage")
+    staged = experiment.function("stage") is not None
     for name in cases:
         recording = load_recording(folder / "series", name)
         if recording.series and (staged or any(channel.endswith(".position") for channel in recording.series)):
@@ -89,9 +97,9 @@ def _frames(experiment: Experiment, config: Config, recording: Recording) -> Ite
     camera = film.camera if film else rendering.Camera()
     font = ImageFont.load_default(15)
     World.meshes = True
-    with experiment.module.scene(config) as world:
-        if experiment.has("stage"):
-            recording = experiment.module.stage(world, recording, config)
+    with experiment.simulation.scene(config) as world:
+        if experiment.function("stage"):
+            recording = experiment.simulation.stage(world, recording, config)
         start, end = (film.span if film else None) or (recording.time[0], recording.time[-1])
         shown = recording.time[recording.between(start, end)]
         instants = shown[np.unique(np.linspace(0, len(shown) - 1, FRAMES).round().astype(int))]

@@ -1,1 +1,1 @@
-"""Grasp detection with a safety region: grasp rectangles, image patches, scenes and the classifier (needs torch)."""
+"""Grasp detection with a safety region: grasp rectangles, image patches, scenes and the classifier."""

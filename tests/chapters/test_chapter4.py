@@ -34,7 +34,7 @@ def configured(experiment, case, **changes):
 
 def simulated(experiment, case, **changes):
     config = configured(experiment, case, **changes)
-    module = chapters.load("4").experiment(experiment).module
+    module = chapters.load("4").experiment(experiment).simulation
     recording = module.simulate(config, lambda purpose: np.random.default_rng(0))
     return recording, module.measure(recording, config)
 
@@ -76,7 +76,7 @@ def test_all_printed_points_are_within_reach_from_the_preferred_posture():
     config = configured("payload_transfer", "reuse")
     arm = baxter("right")
     for point in (config.task.home, *config.task.starts, *config.task.ends):
-        q = nearest(arm, config.task.posture, point, task="position")
+        q = nearest(arm, config.task.posture, point, task="position", settle=400)
         assert kinematics.forward(arm, q)[0] == pytest.approx(point, abs=1e-9)
         assert np.all((q > arm.lower) & (q < arm.upper))
 

@@ -1,9 +1,7 @@
 import numpy as np
 import pytest
 
-from dexrepro.vision.classifier import GraspClassifier, confusion
-
-pytest.importorskip("torch")
+from dexrepro.vision.classifier import GraspClassifier, _batches, confusion
 
 
 def toy(count, seed):
@@ -46,3 +44,36 @@ def test_channels_are_standardised_on_the_training_set():
 def test_confusion_counts_true_classes_in_rows():
     counts = confusion(np.array([0, 0, 1, 2]), np.array([0, 2, 1, 2]))
     assert counts.tolist() == [[1, 0, 1], [0, 1, 0], [0, 0, 1]]
+
+
+def test_gradient_is_that_of_the_cross_entropy():
+    classifier, (patches, labels) = GraspClassifier(seed=1), toy(8, 4)
+    inputs = classifier._prepared(patches)
+    classifier.weights = [weight.astype(np.float64) for weight in classifier.weights]
+    rng = np.random.default_rng(5)
+
+    def loss():
+        scores = classifier._scores(inputs)[0]
+        return float(np.mean(np.log(np.exp(scores).sum(1)) - scores[np.arange(len(labels)), labels]))
+
+    for weight, slope in zip(classifier.weights, classifier.gradient(inputs, labels)[1], strict=True):
+        along = rng.standard_normal(weight.shape)
+        weight += 1e-6 * along
+        ahead = loss()
+        weight -= 2e-6 * along
+        behind = loss()
+        weight += 1e-6 * along
+        assert np.sum(slope * along) == pytest.approx((ahead - behind) / 2e-6, rel=1e-3, abs=1e-6)
+
+
+def test_first_weights_and_order_are_those_of_pytorch_for_the_seed():
+    first = GraspClassifier(seed=3).weights[0]
+    assert first[0, 0, 0] == pytest.approx([-0.0749483, -0.0596323, -0.0323776, -0.0715177, -0.0042915], abs=1e-7)
+    order = next(_batches(np.random.RandomState(3), 1000, 10))
+    assert order.tolist() == [986, 114, 871, 894, 140, 885, 232, 402, 837, 674]  # torch.randperm
+
+
+def test_every_patch_is_taken_once_an_epoch():
+    parts = list(_batches(np.random.RandomState(0), 150, 64))
+    assert [len(part) for part in parts] == [64, 64, 22]
+    assert sorted(np.concatenate(parts)) == list(range(150))

@@ -9,11 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Rng
 from dexrepro.control.computed_torque import ComputedTorque
+from dexrepro.control.contract import Measured
 from dexrepro.control.holding_line import HoldingLineRegulation
+from dexrepro.control.motion import Motion
 from dexrepro.experiment import Config, Recording
+from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
@@ -42,7 +47,7 @@ def start(config: Config, role: str) -> Array:
     return place
 
 
-def scene(config: Config, rng: Any = None) -> World:
+def scene(config: Config, rng: Rng | None = None) -> World:
     """Both arms, each with a force sensor at its gripper, and a massless balloon that pushes them apart."""
     world = World(step=config.step, perturbation=config.perturbation)
     world.add_body("torso", torso(), (0, 0, 0), collides=False)
@@ -67,7 +72,7 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
     return recording
 
 
-def run(config: Config, rng: Any, path: Callable[[float], Array]) -> Recording:
+def run(config: Config, rng: Rng, path: Callable[[float], Array]) -> Recording:
     """Approach, then hold for the configured duration; time counts from the contact that triggers the law.
 
     path: displacement (3,) [m] of the leader's gripper at the time [s] since then; the operator sees the contact.
@@ -119,7 +124,7 @@ class GripperServo:
         """Whether the next call looks at its target."""
         return self._sample % 4 == 0
 
-    def __call__(self, sense: Any, target: Array) -> list[float]:
+    def __call__(self, sense: Sense, target: Array) -> list[float]:
         """Torque (7,) [N m] towards a place (3,) [m], the measured contact force compensated."""
         inverse = self._inverse
         if self._sample == 0:
@@ -131,7 +136,8 @@ class GripperServo:
         if self._sample % 2 == 0:
             q, rates = sense.position, inverse.velocity
             ahead = self._reference + (self._sample % 4 + 1) * self._step * rates
-            torque = self._law(ahead, q, sense.velocity, rates)
+            measured = Measured(sense.time, q, sense.velocity, np.zeros(len(q)))
+            torque = self._law(measured, Motion(ahead, rates, np.zeros(len(q)))).torque
             self._torque = (torque - self._model.tip_torque(q, sense.felt)).tolist()
         self._sample += 1
         return self._torque
@@ -151,7 +157,7 @@ class Leader:
         self._hand = np.linalg.inv(self._map)
         self._path, self._elapsed = path, elapsed
 
-    def __call__(self, sense: Any) -> list[float]:
+    def __call__(self, sense: Sense) -> list[float]:
         if self._servo.due:
             hand = self._hand @ self._path(self._elapsed(sense.time))
             self._target = self._home + self._map @ hand
@@ -165,7 +171,7 @@ class Follower:
     """
 
     def __init__(self, config: Config, arm: Arm) -> None:
-        self._servo, self._law = GripperServo(config, arm, FACING["left"]), config.law
+        self._servo, self._law = GripperServo(config, arm, FACING["left"]), HoldingDrive(config.law)
         self._approach, self._threshold = config.approach_speed * config.step, config.contact_force
         self._regulations = [HoldingLineRegulation(gain=config.regulation) for _ in "xz"]
         self.reference = self._home = start(config, "follower")
@@ -175,16 +181,16 @@ class Follower:
         """Time [s] since contact, 0 before it."""
         return max(now - self.contact_time, 0.0)
 
-    def __call__(self, sense: Any) -> list[float]:
+    def __call__(self, sense: Sense) -> list[float]:
         fx, fy, fz = sense.felt
         if self.contact_time == math.inf:
             self.reference = self.reference - np.array((0.0, self._approach, 0.0))
             if math.sqrt(fx * fx + fy * fy + fz * fz) > self._threshold:
                 self.contact_time = sense.time
                 self._home[1] = sense.tip[1]
-                self._law.reset(0.0)
+                self._law.reset(sense.time, 0.0)
         else:
-            along = self._law(sense.tip[1] - self._home[1], fy)
+            along = self._law(sense.time, sense.tip[1] - self._home[1], fy)
             (x, z), home = (law(force) for law, force in zip(self._regulations, (fx, fz))), self._home
             self.reference = np.array((home[0] + x, home[1] + along, home[2] + z))
         return self._servo(sense, self.reference)

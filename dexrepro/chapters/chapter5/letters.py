@@ -34,7 +34,7 @@ def demonstrations(
 
 def taught(demonstration: Demonstration, config: Config) -> Demonstration:
     """What a primitive learns from: with the printed sign of D v, Eq. (5.5), the same path at negated velocity."""
-    return replace(demonstration, velocity=config.training.damping_sign * demonstration.velocity)
+    return replace(demonstration, velocity=(-1 if config.training.printed else 1) * demonstration.velocity)
 
 
 def letter_scaling(config: Config) -> Scaling:
@@ -67,10 +67,6 @@ def features(initial: GaussianKernels, count: int, config: Config, rng: np.rando
 def squared_error(path: Any, wanted: Any) -> float:
     """Mean squared distance [cm^2] of two paths (N, d)."""
     return float(np.mean(np.sum((path - wanted) ** 2, axis=-1)))
-
-
-def rms_distance(path: Any, wanted: Any) -> float:
-    return squared_error(path, wanted) ** 0.5
 
 
 def rollout(primitive: DMP, config: Config, **options: Any) -> Any:
