@@ -334,7 +334,7 @@ GRASPING = (
         greater(f"{CLASSES}.wide.train_accuracy", 0.98),
         by_construction="Cornell's data, relabelled, is not available: synthetic scenes whose difficulty is ours.",
         where="3.4.2.3",
-        note="98.7 % with one seed of the network, and 92 % on new scenes.",
+        note="With one seed of the network; fewer of the new scenes are told right (Fig. 3.C).",
     ),
     Claim(
         "C3.20",
@@ -342,7 +342,7 @@ GRASPING = (
         "Grasps outside the safety region can be told from those inside: at most a tenth of them passes for safe.",
         less(f"{CLASSES}.wide.unsafe_called_safe", 0.1),
         where="3.4.2.2",
-        note="2 of 104. Needs a patch that reaches beyond the safety margin (C3.20b) and enough scenes: 200 were taken "
+        note="Needs a patch that reaches beyond the safety margin (C3.20b) and enough scenes: 200 were taken "
         "after 150 had let 7 of 60 pass.",
     ),
     Claim(
@@ -359,7 +359,7 @@ GRASPING = (
         "of them than with random grasps.",
         every(greater(f"{PICKS}.chosen.success", 0.5), greater(f"{PICKS}.success_gain", 0.0)),
         where="3.5, 3.6",
-        note="13 of 20 against 2 of 20; the 95 % interval of the former, 41 to 85 %, does not exclude half. The number "
+        note="The 95 % interval of the former (Fig. 3.D) does not exclude half. The number "
         "of proposals was raised to 200 because 40 left scenes without a good one. The book shows single grasps and no "
         "rate of success. Closing is modelled as a rigid hold.",
     ),
