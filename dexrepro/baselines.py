@@ -35,10 +35,34 @@ def baseline_dir() -> Path:
     return inside if inside.is_dir() else Path(__file__).parent.parent / "results" / "baselines"
 
 
+def baseline_file(chapter: str, experiment: str) -> Path:
+    """Baseline of one experiment; that of an experiment outside the package stands in its own folder."""
+    if chapters.is_added(chapter):
+        return chapters.load(chapter).folder / experiment / "baseline.json"
+    return baseline_dir() / f"chapter{chapter}" / f"{experiment}.json"
+
+
 def read(chapter: str) -> dict[str, Any]:
     """Stored baseline of a chapter: {"metrics": {experiment: {name: {value, rtol, atol}}}, "claims": {id: verdict}}."""
-    path = baseline_dir() / f"chapter{chapter}.json"
-    return read_json(path) if path.exists() else {"chapter": chapter, "metrics": {}, "claims": {}}
+    whole: dict[str, Any] = {"metrics": {}, "claims": {}}
+    for experiment in chapters.load(chapter).experiments:
+        if (path := baseline_file(chapter, experiment.name)).exists():
+            stored = read_json(path)
+            whole["metrics"][experiment.name] = stored["metrics"]
+            whole["claims"] |= stored["claims"]
+    return whole
+
+
+def _write(chapter: str, baseline: Mapping[str, Any]) -> list[str]:
+    written = []
+    for name, metrics in baseline["metrics"].items():
+        ids = [claim.id for claim in chapters.load(chapter).claims_of(name)]
+        verdicts = {key: baseline["claims"][key] for key in ids if key in baseline["claims"]}
+        path = baseline_file(chapter, name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_json(path, {"metrics": metrics, "claims": verdicts})
+        written.append(f"wrote {path}")
+    return written
 
 
 def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> dict[str, Any]:
@@ -126,13 +150,15 @@ def is_ok(report: Mapping[str, Any]) -> bool:
 # --------------------------------------------------------------------------------------------------------- updating
 
 
-def update_chapter(chapter: str, results: Path, *, accept: Sequence[str], workers: int | None) -> list[str]:
-    """Run the chapter as shipped and perturbed, and store metrics, tolerances and verdicts.
+def update_chapter(
+    chapter: str, results: Path, only: Sequence[str] = (), *, accept: Sequence[str], workers: int | None
+) -> list[str]:
+    """Run experiments of a chapter (none named: all) as shipped and perturbed; store metrics, tolerances, verdicts.
 
     Returns what changed, a line each. Raises InputError where a verdict changed that is not in ``accept``.
     """
-    overrides = [f"results='{results}'"]
-    plans, skipped = plan_chapter(chapter, overrides)
+    overrides = [f"results='{results}'", *([f"only=[{','.join(only)}]"] if only else [])]
+    plans, _ = plan_chapter(chapter, overrides)
     moved = [plan_chapter(chapter, overrides, perturbation=size)[0] for size in PERTURBATIONS]
     for number, group in enumerate(moved):
         for plan in group:
@@ -142,7 +168,7 @@ def update_chapter(chapter: str, results: Path, *, accept: Sequence[str], worker
         if outcome.failures:
             raise InputError("; ".join(f"{name}: {text}" for name, text in outcome.failures.items()))
     old = read(chapter)
-    new: dict[str, Any] = {"chapter": chapter, "metrics": {}, "claims": {}}
+    new: dict[str, Any] = {"metrics": {}, "claims": {}}
     for plan, *perturbed in zip(plans, *moved, strict=True):
         metrics, *disturbed = (read_json(p.folder / "metrics.json") for p in (plan, *perturbed))
         stored = old["metrics"].get(plan.experiment, {})
@@ -152,12 +178,6 @@ def update_chapter(chapter: str, results: Path, *, accept: Sequence[str], worker
         }
         for claim in read_json(plan.folder / "claims.json"):
             new["claims"][claim["id"]] = claim["verdict"]
-    for name in skipped:
-        if name in old["metrics"]:
-            new["metrics"][name] = old["metrics"][name]
-            for claim_id in (claim.id for claim in chapters.load(chapter).claims_of(name)):
-                if claim_id in old["claims"]:
-                    new["claims"][claim_id] = old["claims"][claim_id]
     changed = {
         key: (old["claims"][key], verdict)
         for key, verdict in new["claims"].items()
@@ -167,9 +187,8 @@ def update_chapter(chapter: str, results: Path, *, accept: Sequence[str], worker
     if refused:
         texts = ", ".join(f"{key} ({changed[key][0]} -> {changed[key][1]})" for key in refused)
         raise InputError(f"verdicts changed: {texts}; review them and repeat with --accept {' '.join(refused)}")
-    baseline_dir().mkdir(parents=True, exist_ok=True)
-    write_json(baseline_dir() / f"chapter{chapter}.json", new)
-    return [f"{key}: {before} -> {after}" for key, (before, after) in changed.items()] + _sensitive(new)
+    written = _write(chapter, new)
+    return [f"{key}: {before} -> {after}" for key, (before, after) in changed.items()] + _sensitive(new) + written
 
 
 def _entry(value: float | None, disturbed: Sequence[float | None], stored: Mapping[str, Any] | None) -> dict[str, Any]:

@@ -34,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.path.insert(0, "")  # a user's own classes, named by _target_
     try:
-        return _dispatch(arguments)
+        return _dispatch(_experiments_option(arguments))
     except KeyboardInterrupt:
         err.print("interrupted; the same command completes what is missing", markup=False)
         return INTERRUPTED
@@ -57,9 +57,29 @@ def _dispatch(arguments: list[str]) -> int:
     return int(options.function(options))
 
 
+def _experiments_option(arguments: list[str]) -> list[str]:
+    """Add the folders that ``--experiments DIR`` names, before or behind any command; the other arguments."""
+    from dexrepro import chapters
+
+    parser = argparse.ArgumentParser(prog="dexrepro", add_help=False, allow_abbrev=False)
+    parser.add_argument("--experiments", action="append", default=[], type=Path, metavar="DIR")
+    options, rest = parser.parse_known_args(arguments)
+    for folder in options.experiments:
+        if not folder.is_dir():
+            raise InputError(f"--experiments = {folder} is not allowed: there is no such folder")
+        known = chapters.numbers()
+        chapters.add(folder)
+        if chapters.numbers() == known and not chapters.is_added(known[0]):
+            raise InputError(
+                f"--experiments = {folder} adds nothing: an experiment is a folder in it with experiment.py"
+            )
+    return rest
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="dexrepro", description="Reproduce the book's figures and check its claims.")
     parser.add_argument("--version", action="version", version=f"dexrepro {__version__}")
+    parser.add_argument("--experiments", metavar="DIR", help="experiments of your own, beside the book's")
     commands = parser.add_subparsers(required=True, metavar="command")
     commands.add_parser("run", help="simulate, measure and draw (see: dexrepro run --help)", add_help=False)
     selection = argparse.ArgumentParser(add_help=False)
@@ -263,13 +283,10 @@ def check_command(options: argparse.Namespace) -> int:
     from dexrepro.selection import existing, selected
 
     numbers, only, results, workers, _ = selected(options.selection)
-    if options.update and only:
-        raise InputError("--update renews whole chapters; leave out only= and figure=")
     if options.update:
         for number in numbers:
-            for line in baselines.update_chapter(number, results, accept=options.accept, workers=workers):
+            for line in baselines.update_chapter(number, results, only, accept=options.accept, workers=workers):
                 out.print(line, markup=False)
-            out.print(f"wrote {baselines.baseline_dir() / f'chapter{number}.json'}", markup=False)
         return OK
     try:
         reports = [baselines.check_chapter(number, existing(results), only) for number in numbers]

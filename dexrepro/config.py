@@ -1,6 +1,6 @@
 """From conf/ and the user's overrides to one resolved, checked configuration a case.
 
-Provenance: each leaf of conf/chapter/N.yaml says on its line where it comes from, in one grammar::
+Provenance: each leaf of conf/chapter/N/EXPERIMENT.yaml says on its line where it comes from, in one grammar::
 
     stiffness: 45   # k_o [N/m] | printed 2.4.1.1
     rest_length: 0.55   # m | chosen: equals the printed initial estimate | 0.5..0.65
@@ -23,11 +23,14 @@ from typing import Any
 
 import yaml
 from hydra import compose, initialize_config_dir
+from hydra.core.config_store import ConfigStore
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
+
+from dexrepro import chapters
 
 SETTINGS = ("only", "figure", "seed", "results", "workers", "force", "quiet", "gui")
 
@@ -40,6 +43,19 @@ def config_dir() -> Path:
     """The folder of Hydra configurations: inside an installed wheel, or at the top of a checkout."""
     inside = Path(__file__).parent / "conf"
     return inside if inside.is_dir() else Path(__file__).parent.parent / "conf"
+
+
+def config_files(chapter: str) -> dict[str, Path]:
+    """Where the parameters of a chapter stand: the file of each of its experiments, and of ``shared`` values.
+
+    Those of the book stand in conf/chapter/N; an experiment outside the package has ``config.yaml`` in its own folder,
+    its chapter ``shared.yaml``.
+    """
+    if chapter != chapters.OWN and chapters.is_added(chapter):
+        folder = chapters.load(chapter).folder
+        files = {path.parent.name: path for path in sorted(folder.glob("*/config.yaml"))}
+        return {"shared": shared, **files} if (shared := folder / "shared.yaml").exists() else files
+    return {path.stem: path for path in sorted((config_dir() / "chapter" / chapter).glob("*.yaml"))}
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:
@@ -122,10 +138,15 @@ def leaves_with_comments(text: str) -> Iterator[tuple[str, str, str]]:
 
 
 def provenance(chapter: str) -> dict[str, Provenance]:
-    """Provenance of every leaf of conf/chapter/N.yaml that states one."""
-    text = (config_dir() / "chapter" / f"{chapter}.yaml").read_text()
-    found = ((key, parse_provenance(comment)) for key, _, comment in leaves_with_comments(text))
-    return {key: item for key, item in found if item}
+    """Provenance of every leaf of a chapter's configuration that states one."""
+    return {key: found for key, _, comment in commented_leaves(chapter) if (found := parse_provenance(comment))}
+
+
+def commented_leaves(chapter: str) -> Iterator[tuple[str, str, str]]:
+    """(dotted key, value text, comment) of every leaf of a chapter's configuration."""
+    for name, path in config_files(chapter).items():
+        for key, value, comment in leaves_with_comments(path.read_text("utf-8")):
+            yield f"{name}.{key}", value, comment
 
 
 # ------------------------------------------------------------------------------------------------------- composing
@@ -140,6 +161,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         raise InputError(
             f"'{own[0]}' needs --config-dir FOLDER, the folder that holds {own[0][1:].replace('=', '/')}.yaml"
         )
+    _offer(chapter)
     shipped = _shipped(str(config_dir()), chapter, _changed(chapter))
     search = [f"hydra.searchpath=['file://{Path(extra_dir).resolve()}']"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
@@ -179,9 +201,19 @@ def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
     return keys
 
 
+def _offer(chapter: str) -> None:
+    """Let Hydra find the configuration of a chapter outside the package."""
+    if chapter == chapters.OWN or not chapters.is_added(chapter):
+        return
+    for name, path in config_files(chapter).items():
+        node = OmegaConf.create({name: yaml.safe_load(path.read_text("utf-8"))})
+        ConfigStore.instance().store(f"{name}.yaml", node, group=f"chapter/{chapter}", package="_global_")
+    defaults = {"defaults": [f"{chapter}/{name}" for name in config_files(chapter)]}
+    ConfigStore.instance().store(f"{chapter}.yaml", defaults, group="chapter", package="_global_")
+
+
 def _changed(chapter: str) -> float:
-    files = config_dir() / "config.yaml", config_dir() / "chapter" / f"{chapter}.yaml"
-    return max(path.stat().st_mtime for path in files)
+    return max(path.stat().st_mtime for path in (config_dir() / "config.yaml", *config_files(chapter).values()))
 
 
 @lru_cache(maxsize=16)

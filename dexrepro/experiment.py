@@ -1,22 +1,20 @@
 """The vocabulary of a chapter: what an experiment, a recording, a claim, a reference and an erratum are.
 
-Everything here is a small value object without input or output. A chapter package offers::
-
-    TITLE = "Single-leader dual-follower manipulation"
-    EXPERIMENTS = (Experiment.of(movement_estimation), ...)      # modules, in the order of the book
-    CLAIMS, REFERENCES = claims.CLAIMS, claims.REFERENCES
-    ERRATA = errata.ERRATA
-
-and each experiment is one module with, in reading order, ``FIGURES``, ``TABLES``, ``simulate``, ``measure`` and,
-where they are needed, ``summarise``, ``draw``, ``tabulate`` and ``scene``; see :class:`Experiment`.
+Everything here is a small value object without input or output. An experiment is a folder of three modules:
+``experiment.py`` makes numbers, ``figures.py`` shows them, ``claims.py`` says what the book says of them; see
+:class:`Experiment` for what each holds, and :mod:`dexrepro.chapters` for how they are found.
 """
 
 from __future__ import annotations
 
+import ast
+import importlib
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -112,46 +110,86 @@ class Film:
 
 @dataclass(frozen=True)
 class Experiment:
-    """One section's simulations. All functions but ``simulate`` and ``measure`` are optional.
+    """One section's simulations: a folder, imported part by part when it is needed.
+
+    ``experiment.py`` holds ``RATE`` [Hz] at which series are kept and these functions, of which the first two are
+    needed:
 
     simulate(config, rng) -> Recording: one case. ``config`` is resolved, its ``_target_`` nodes are live objects,
         ``config.perturbation`` [rad, or share of the data's range] is to be added to the initial state, and ``rng``
         gives a generator for a named purpose: ``rng("noise")``. Compared cases share the noise of a purpose.
     measure(recording, config) -> {metric: number}: at the full rate, in the case's own process.
     summarise(metrics, config) -> {metric: number}: numbers over several cases, from ``{case: {metric: number}}``.
-    draw(recordings, metrics, config) -> {figure id: matplotlib Figure}: from what is on disk alone. A figure whose
-        cases are missing is left out.
-    tabulate(recordings, metrics, config) -> {table id: DataFrame}: likewise.
     scene(config) -> World: the scene without its laws, so that any recorded instant can be rendered.
     stage(world, recording, config) -> Recording: for a film, adds what is only seen to the scene and returns channels
         under the names that ``World.snapshot`` reads.
+
+    ``figures.py`` may hold ``FIGURES``, ``TABLES``, ``FILM`` and
+
+    draw(recordings, metrics, config) -> {figure id: matplotlib Figure}: from what is on disk alone. A figure whose
+        cases are missing is left out.
+    tabulate(recordings, metrics, config) -> {table id: DataFrame}: likewise.
+
+    ``claims.py`` may hold ``CLAIMS`` and ``REFERENCES``, and the folder's ``__init__.py`` ``REQUIRES``: packages
+    without which the experiment is skipped.
     """
 
-    name: str
-    summary: str
-    figures: Mapping[str, Figure]
-    tables: Mapping[str, str]
-    rate: float
-    module: ModuleType
-    requires: tuple[str, ...]
-    film: Film | None = None
+    package: str
+    folder: Path
 
-    @classmethod
-    def of(cls, module: ModuleType) -> Experiment:
-        """Describe the experiment that a module defines; its name is the module's."""
-        return cls(
-            name=module.__name__.rpartition(".")[2],
-            summary=(module.__doc__ or "").strip().partition("\n")[0],
-            figures=getattr(module, "FIGURES", {}),
-            tables=getattr(module, "TABLES", {}),
-            rate=getattr(module, "RATE", 100.0),
-            module=module,
-            requires=tuple(getattr(module, "REQUIRES", ())),
-            film=getattr(module, "FILM", None),
-        )
+    @property
+    def name(self) -> str:
+        return self.folder.name
 
-    def has(self, function: str) -> bool:
-        return hasattr(self.module, function)
+    @cached_property
+    def summary(self) -> str:
+        """First line of what ``experiment.py`` says of itself."""
+        text = ast.get_docstring(ast.parse((self.folder / "experiment.py").read_text("utf-8"))) or ""
+        return text.partition("\n")[0]
+
+    @cached_property
+    def simulation(self) -> ModuleType:
+        """The module ``experiment.py``."""
+        return importlib.import_module(f"{self.package}.experiment")
+
+    @property
+    def rate(self) -> float:
+        return float(getattr(self.simulation, "RATE", 100.0))
+
+    @property
+    def requires(self) -> tuple[str, ...]:
+        return tuple(getattr(importlib.import_module(self.package), "REQUIRES", ()))
+
+    @property
+    def figures(self) -> Mapping[str, Figure]:
+        return self._part("figures", "FIGURES", {})
+
+    @property
+    def tables(self) -> Mapping[str, str]:
+        return self._part("figures", "TABLES", {})
+
+    @property
+    def film(self) -> Film | None:
+        return self._part("figures", "FILM", None)
+
+    @property
+    def claims(self) -> tuple[Claim, ...]:
+        return self._part("claims", "CLAIMS", ())
+
+    @property
+    def references(self) -> tuple[Reference, ...]:
+        return self._part("claims", "REFERENCES", ())
+
+    def function(self, name: str) -> Callable[..., Any] | None:
+        """One of the optional functions above, or None."""
+        if name in ("draw", "tabulate"):
+            return self._part("figures", name, None)
+        return getattr(self.simulation, name, None)
+
+    def _part(self, module: str, name: str, default: Any) -> Any:
+        if not (self.folder / f"{module}.py").exists():
+            return default
+        return getattr(importlib.import_module(f"{self.package}.{module}"), name, default)
 
 
 @dataclass(frozen=True)

@@ -192,6 +192,9 @@ def source_digest(chapter: str, with_report: bool = False) -> str:
     """Hash of the code a case depends on: everything but other chapters, and but report/ unless asked for."""
     root = Path(__file__).parent
     digest = hashlib.sha1()
+    if chapter != chapters.OWN and chapters.is_added(chapter):
+        for path in sorted(chapters.load(chapter).folder.rglob("*.py")):
+            digest.update(path.read_bytes())
     for path in sorted(root.rglob("*.py")):
         parts = path.relative_to(root).parts
         if parts[0] == "chapters" and len(parts) > 2 and parts[1] not in (chapter, f"chapter{chapter}"):

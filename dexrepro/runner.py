@@ -104,11 +104,11 @@ def execute(job: Job) -> dict[str, Any]:
     start = time.perf_counter()
     with warnings.catch_warnings(record=True) as caught:
         config = live(job.config)
-        recording: Recording = experiment.module.simulate(
+        recording: Recording = experiment.simulation.simulate(
             config, lambda purpose: generator(job.seed, job.experiment, purpose)
         )
         wall = time.perf_counter() - start
-        measured: Metrics = experiment.module.measure(recording, config)
+        measured: Metrics = experiment.simulation.measure(recording, config)
     entry = {
         "status": recording.status,
         "steps": recording.steps,
@@ -166,8 +166,8 @@ def _keep_animations(old: Path, new: Path) -> None:
 
 def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config) -> None:
     """Add the numbers over several cases to nested metrics."""
-    if experiment.has("summarise"):
-        nested[SUMMARY] = experiment.module.summarise(nested, config)
+    if function := experiment.function("summarise"):
+        nested[SUMMARY] = function(nested, config)
 
 
 def present(chapter: str, experiment: Experiment, folder: Path) -> None:
@@ -189,12 +189,12 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
     for name in ("tables", "figures"):
         shutil.rmtree(folder / name, ignore_errors=True)
         (folder / name).mkdir()
-    if experiment.has("tabulate"):
-        for identifier, table in experiment.module.tabulate(recordings, nested, config).items():
+    if tabulate := experiment.function("tabulate"):
+        for identifier, table in tabulate(recordings, nested, config).items():
             table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
-    if experiment.has("draw"):
+    if draw := experiment.function("draw"):
         with style.style():
-            for identifier, figure in experiment.module.draw(recordings, nested, config).items():
+            for identifier, figure in draw(recordings, nested, config).items():
                 style.save(figure, folder / "figures", identifier)
 
 

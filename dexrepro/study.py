@@ -110,8 +110,8 @@ def evaluate(chapter: str, experiment: str, index: int) -> dict[str, Any]:
     for case in _cases_of(claims, cases):
         try:
             config = live({**cases[case], "perturbation": 0.0, "seed": seed, "case": case})
-            recording = definition.module.simulate(config, lambda purpose: generator(seed, experiment, purpose))
-            metrics[case] = definition.module.measure(recording, config)
+            recording = definition.simulation.simulate(config, lambda purpose: generator(seed, experiment, purpose))
+            metrics[case] = definition.simulation.measure(recording, config)
         except Exception as problem:
             errors.append(f"{case}: {type(problem).__name__}: {problem}")
     if len(metrics) == len(cases):

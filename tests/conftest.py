@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -11,39 +12,27 @@ from pathlib import Path
 import pytest
 
 import dexrepro
-from dexrepro import chapters, config, plan
+from dexrepro import chapters
 
 ROOT = Path(dexrepro.__file__).parent.parent
 TOY = Path(__file__).parent / "toy"
 
 
 @pytest.fixture
-def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    """Make chapter 90 the only chapter, work in an empty folder, and return that folder."""
-    monkeypatch.setattr(config, "config_dir", lambda: TOY / "conf")
-    monkeypatch.setattr(chapters, "__path__", [str(TOY)])
-    monkeypatch.chdir(tmp_path)
-    for function in (chapters.numbers, chapters.load, plan.source_digest):
-        function.cache_clear()
-    yield tmp_path
-    for function in (chapters.numbers, chapters.load, plan.source_digest):
-        function.cache_clear()
-    for name in [name for name in sys.modules if name.startswith("dexrepro.chapters.chapter90")]:
-        del sys.modules[name]
+def toy_book(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A book of one tiny chapter, 90, outside the package."""
+    return Path(shutil.copytree(TOY, tmp_path_factory.mktemp("toy") / "book"))
 
 
 @pytest.fixture
-def toy_tree(tmp_path: Path) -> Path:
-    """A folder with a checkout whose only chapter is 90, for commands of a shell and the processes they start."""
-    package = tmp_path / "dexrepro"
-    (package / "chapters").mkdir(parents=True)
-    for path in (ROOT / "dexrepro").iterdir():
-        if path.name not in ("chapters", "__pycache__"):
-            (package / path.name).symlink_to(path)
-    (package / "chapters/__init__.py").symlink_to(ROOT / "dexrepro/chapters/__init__.py")
-    (package / "chapters/chapter90").symlink_to(TOY / "chapter90")
-    (tmp_path / "conf").symlink_to(TOY / "conf")
-    return tmp_path
+def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, toy_book: Path) -> Path:
+    """Make chapter 90 the only chapter, here and in commands started from here; work in an empty folder."""
+    monkeypatch.setenv(chapters.ADDED, str(toy_book))
+    monkeypatch.chdir(tmp_path)
+    chapters.forget()
+    yield tmp_path
+    monkeypatch.undo()
+    chapters.forget()
 
 
 Shell = Callable[..., subprocess.CompletedProcess[str]]

@@ -14,10 +14,9 @@ RESULTS = Path("results")
 
 
 @pytest.fixture
-def stored(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(baselines, "baseline_dir", lambda: toy / "baselines")
+def stored(toy: Path) -> Path:
     baselines.update_chapter("90", RESULTS, accept=[], workers=1)
-    return toy / "baselines/chapter90.json"
+    return baselines.baseline_file("90", "decay")
 
 
 def edit(path: Path, change) -> None:
@@ -29,18 +28,18 @@ def edit(path: Path, change) -> None:
 def test_a_fresh_update_agrees_with_its_own_results(stored: Path) -> None:
     report = baselines.check_chapter("90", RESULTS)
     assert baselines.is_ok(report)
-    assert report["compared"] == len(read_json(stored)["metrics"]["decay"]) > 10
+    assert report["compared"] == len(read_json(stored)["metrics"]) > 10
 
 
 def test_counts_are_exact_and_numbers_have_a_tolerance_that_follows_their_sensitivity(stored: Path) -> None:
-    entries = read_json(stored)["metrics"]["decay"]
+    entries = read_json(stored)["metrics"]
     assert entries["decay.plain.samples"] == {"value": 200, "rtol": 0.0, "atol": 0.0}
     assert entries["decay.plain.final"]["rtol"] == 1e-3
 
 
 def test_drift_missing_new_and_changed_verdicts_are_told_apart(stored: Path) -> None:
     def change(data) -> None:
-        metrics = data["metrics"]["decay"]
+        metrics = data["metrics"]
         metrics["decay.plain.final"]["value"] *= 1.01
         metrics["decay.gone"] = {"value": 1.0, "rtol": 1e-3, "atol": 0.0}
         del metrics["decay.fast.final"]
@@ -65,9 +64,9 @@ def test_an_update_refuses_a_changed_verdict_unless_it_is_accepted(stored: Path)
 
 def test_a_tolerance_set_by_hand_survives_an_update(stored: Path) -> None:
     by_hand = {"rtol": 0.5, "reason": "depends on the optimiser's version"}
-    edit(stored, lambda data: data["metrics"]["decay"]["decay.plain.final"].update(by_hand))
+    edit(stored, lambda data: data["metrics"]["decay.plain.final"].update(by_hand))
     baselines.update_chapter("90", RESULTS, accept=[], workers=1)
-    entry = read_json(stored)["metrics"]["decay"]["decay.plain.final"]
+    entry = read_json(stored)["metrics"]["decay.plain.final"]
     assert entry["rtol"] == 0.5
     assert entry["reason"] == by_hand["reason"]
 
@@ -75,12 +74,12 @@ def test_a_tolerance_set_by_hand_survives_an_update(stored: Path) -> None:
 def test_a_sensitivity_once_seen_remains_while_the_number_is_the_same(stored: Path) -> None:
     def widen(data) -> None:
         for name, value in (("decay.plain.final", 1.0), ("decay.fast.final", 2.0)):
-            entry = data["metrics"]["decay"][name]
+            entry = data["metrics"][name]
             entry.update(value=value * entry["value"], rtol=0.3)
 
     edit(stored, widen)
     baselines.update_chapter("90", RESULTS, accept=[], workers=1)
-    entries = read_json(stored)["metrics"]["decay"]
+    entries = read_json(stored)["metrics"]
     assert entries["decay.plain.final"]["rtol"] == 0.3
     assert entries["decay.fast.final"]["rtol"] == 1e-3, "another number than before"
 

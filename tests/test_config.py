@@ -11,8 +11,8 @@ from dexrepro.config import (
     InputError,
     Provenance,
     _names,
+    commented_leaves,
     compose_chapter,
-    config_dir,
     experiment_cases,
     leaves_with_comments,
     parse_provenance,
@@ -44,10 +44,9 @@ def test_leaves_are_found_with_their_dotted_key() -> None:
 
 @pytest.mark.parametrize("chapter", CHAPTERS)
 def test_every_leaf_states_where_it_comes_from(chapter: str) -> None:
-    text = (config_dir() / "chapter" / f"{chapter}.yaml").read_text()
     silent = [
         key
-        for key, value, comment in leaves_with_comments(text)
+        for key, value, comment in commented_leaves(chapter)
         if not key.rpartition(".")[2].startswith("_") and not value.startswith("${") and not parse_provenance(comment)
     ]
     assert not silent
@@ -55,8 +54,7 @@ def test_every_leaf_states_where_it_comes_from(chapter: str) -> None:
 
 @pytest.mark.parametrize("chapter", CHAPTERS)
 def test_a_range_contains_the_value_it_is_given_for(chapter: str) -> None:
-    text = (config_dir() / "chapter" / f"{chapter}.yaml").read_text()
-    for key, value, comment in leaves_with_comments(text):
+    for key, value, comment in commented_leaves(chapter):
         source = parse_provenance(comment)
         if source and source.low is not None and source.high is not None:
             assert source.low < source.high, key

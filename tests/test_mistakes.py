@@ -127,7 +127,6 @@ def test_a_result_that_cannot_be_drawn_is_named_and_stays(
         ("draw only=decay results=.", "there is no such result in ."),
         ("draw figure=90.77", "unknown figure '90.77'"),
         ("check workers=two", "workers = two is not allowed"),
-        ("check --update only=decay", "--update renews whole chapters"),
         ("render case=plain", "of which experiment?"),
         ("study only=decai samples=1", "did you mean 'decay'?"),
         ("study samples=0", "samples = 0 is not allowed: it must be a whole number of 1 or greater"),

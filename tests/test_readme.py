@@ -111,18 +111,42 @@ def test_own_demonstrations_take_the_place_of_the_synthetic(shell: Shell, tmp_pa
     assert list((folder / "figures").glob("*.png"))
 
 
-def test_the_own_experiment_runs(shell: Shell, tmp_path: Path) -> None:
-    for folder in ("dexrepro", "conf"):
-        shutil.copytree(ROOT / folder, tmp_path / folder)
-    chapter = tmp_path / "dexrepro/chapters/chapter2"
-    (chapter / "push.py").write_text(block("python", '"2.Z"'))
-    with open(chapter / "__init__.py", "a") as file:
-        file.write("\nfrom dexrepro.chapters.chapter2 import push\n\nEXPERIMENTS += (Experiment.of(push),)\n")
-    with open(tmp_path / "conf/chapter/2.yaml", "a") as file:
-        file.write(block("yaml", "push:"))
-    done = shell("PYTHONPATH=. python -m dexrepro run figure=2.Z")
+def own_experiment(home: Path) -> None:
+    """The experiment of the README, in the folder that it names."""
+    (home / "lab/push").mkdir(parents=True)
+    for language, name in (
+        ("python", "experiment.py"),
+        ("python", "figures.py"),
+        ("python", "claims.py"),
+        ("yaml", "config.yaml"),
+    ):
+        (home / "lab/push" / name).write_text(block(language, f"# lab/push/{name}"))
+
+
+def test_the_own_experiment_is_run_checked_studied_drawn_and_reported(shell: Shell, tmp_path: Path) -> None:
+    own_experiment(tmp_path)
+    for command in block("sh", "--experiments lab").splitlines():
+        done = shell(command)
+        assert done.returncode == 0, done.stderr
+    assert list((tmp_path / "results/chapterlab/push/figures").glob("fig_lab_*.png"))
+    assert "lab.01" in json.loads((tmp_path / "lab/push/baseline.json").read_text())["claims"]
+    assert "push" in (tmp_path / "results/report/chapterlab.html").read_text()
+    listed = json.loads(shell("dexrepro list --json --experiments lab").stdout)["chapters"]
+    assert [chapter["chapter"] for chapter in listed] == [*chapters.numbers(), "lab"]
+
+
+def test_another_book_is_another_folder(shell: Shell, tmp_path: Path) -> None:
+    own_experiment(tmp_path / "other")
+    (tmp_path / "other/lab").rename(tmp_path / "other/chapter9")
+    (tmp_path / "other/book.yaml").write_text("title: Pushing Arms\nauthors: A. Reader\n")
+    (tmp_path / "other/chapter9/__init__.py").write_text('TITLE = "Pushes"\n')
+    listed = json.loads(shell("dexrepro list --json --experiments other").stdout)["chapters"]
+    assert [(chapter["chapter"], chapter["title"]) for chapter in listed] == [("9", "Pushes")]
+    done = shell("dexrepro run --experiments other && dexrepro report --experiments other")
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "results/chapter2/push/figures/fig_2_Z.png").exists()
+    page = (tmp_path / "results/report/index.html").read_text()
+    assert "Pushing Arms" in page
+    assert "Teleoperation" not in page
 
 
 COMMANDS = [line.partition("#")[0].strip() for line in block("sh", "dexrepro list").splitlines() if "…" not in line]

@@ -18,9 +18,9 @@ def test_the_wheel_works_without_the_checkout(tmp_path: Path) -> None:
     site, empty = tmp_path / "site", tmp_path / "empty"
     empty.mkdir()
     zipfile.ZipFile(next(tmp_path.glob("*.whl"))).extractall(site)
-    shipped = {path.name for path in (ROOT / "conf/chapter").glob("*.yaml")}
-    assert {path.name for path in (site / "dexrepro/conf/chapter").glob("*.yaml")} == shipped
-    assert list((site / "dexrepro/baselines").glob("chapter*.json"))
+    shipped = {path.name for path in (ROOT / "conf/chapter").rglob("*.yaml")}
+    assert {path.name for path in (site / "dexrepro/conf/chapter").rglob("*.yaml")} == shipped
+    assert list((site / "dexrepro/baselines").glob("chapter*/*.json"))
     assert (site / "dexrepro/py.typed").is_file()
     run = [sys.executable, "-m", "dexrepro", "run", "chapter=2", "--cfg", "job"]
     env = {**os.environ, "PYTHONPATH": str(site)}

@@ -1,21 +1,52 @@
-"""The chapters of the book, found by their folders: chapter1, chapter2, ..."""
+"""What experiments there are: the chapters of the book and those a user adds, all found by their folders.
+
+A chapter is a folder of experiments with, where it has them, ``TITLE`` and ``ORDER`` in its ``__init__.py``,
+``errata.py`` and ``claims.py`` (claims that no experiment can test); an experiment is a folder that holds
+``experiment.py``, see :class:`dexrepro.experiment.Experiment`. Folders outside the package are named by
+``--experiments`` or the environment variable ``DEXREPRO_EXPERIMENTS``. Such a folder holds chapters, or is itself one;
+it adds to the book, or, with a ``book.yaml`` (title, authors) in it, takes its place.
+"""
 
 from __future__ import annotations
 
 import importlib
-import pkgutil
+import importlib.util
+import os
+import re
+import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from importlib.machinery import ModuleSpec
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import yaml
 
 from dexrepro.experiment import Claim, Erratum, Experiment, Reference
+
+ADDED = "DEXREPRO_EXPERIMENTS"
+"""The environment variable with the folders of experiments outside the package, as PATH lists folders."""
+OWN = "own"
+"""Beside the chapters: the scene that a user describes; it is listed, drawn and checked with none of them."""
+
+
+@dataclass(frozen=True)
+class Book:
+    """What the pages say of the book: title and authors ("" where no book is behind the experiments)."""
+
+    title: str
+    authors: str = ""
 
 
 @dataclass(frozen=True)
 class Chapter:
-    """What a chapter package offers; see :mod:`dexrepro.experiment`."""
+    """What a chapter's folder offers; claims in the order of their numbers."""
 
     number: str
     title: str
+    folder: Path
     experiments: tuple[Experiment, ...]
     claims: tuple[Claim, ...]
     references: tuple[Reference, ...]
@@ -28,26 +59,103 @@ class Chapter:
         return [claim for claim in self.claims if claim.experiment == experiment]
 
 
-OWN = "own"
-"""Beside the chapters: the scene that a user describes; it is listed, drawn and checked with none of them."""
+def add(folder: Path) -> None:
+    """Look for experiments in a folder outside the package too, here and in processes started from here."""
+    known = [str(path) for path in _added()]
+    os.environ[ADDED] = os.pathsep.join(dict.fromkeys([*known, str(folder.resolve())]))
+    forget()
+
+
+def forget() -> None:
+    """Look again at what there is."""
+    for function in (book, folders, load):
+        function.cache_clear()
+
+
+def is_added(number: str) -> bool:
+    """Whether a chapter lives outside the package; its configuration and baseline then stand in its own folder."""
+    return folders()[number].parent != Path(__file__).parent
 
 
 @cache
+def book() -> Book:
+    """The book that the chapters are about: that of the package, or of an added folder with a ``book.yaml``."""
+    home = next((path for path in _added() if (path / "book.yaml").exists()), Path(__file__).parent)
+    entries = yaml.safe_load((home / "book.yaml").read_text("utf-8"))
+    return Book(str(entries["title"]), str(entries.get("authors", "")))
+
+
+@cache
+def folders() -> dict[str, Path]:
+    """Folder of each chapter, by its number as text (the name of the folder without ``chapter``)."""
+    homes = [path for path in _added() if (path / "book.yaml").exists()] or [Path(__file__).parent]
+    found: dict[str, Path] = {}
+    for home in (*homes, *(path for path in _added() if path not in homes)):
+        for folder in [home] if _experiments(home) else sorted(path for path in home.iterdir() if _experiments(path)):
+            if folder.name != OWN:
+                found.setdefault(folder.name.removeprefix("chapter"), folder)
+    return found
+
+
 def numbers() -> tuple[str, ...]:
-    """Numbers of the chapters there are, as text."""
-    names = (module.name for module in pkgutil.iter_modules(__path__) if module.ispkg)
-    return tuple(sorted(name.removeprefix("chapter") for name in names if name != OWN))
+    """Numbers of the chapters there are, as text, in their order."""
+    return tuple(sorted(folders(), key=natural))
+
+
+def natural(text: str) -> list[tuple[int, str]]:
+    """Sorting key under which C1.9 comes before C1.10."""
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", text)]
 
 
 @cache
 def load(number: str) -> Chapter:
     """Import one chapter, or what is beside them."""
-    package = importlib.import_module(f"{__name__}.{OWN if number == OWN else f'chapter{number}'}")
+    folder = Path(__file__).parent / OWN if number == OWN else folders()[number]
+    package = _package(folder)
+    order = list(getattr(package, "ORDER", ()))
+    names = sorted(_experiments(folder), key=lambda name: (order.index(name) if name in order else len(order), name))
+    experiments = tuple(Experiment(f"{package.__name__}.{name}", folder / name) for name in names)
+    claims = [claim for experiment in experiments for claim in experiment.claims]
+    claims += _part(package, folder, "claims", "CLAIMS")
     return Chapter(
-        number=number,
-        title=package.TITLE,
-        experiments=tuple(package.EXPERIMENTS),
-        claims=tuple(package.CLAIMS),
-        references=tuple(package.REFERENCES),
-        errata=tuple(package.ERRATA),
+        number,
+        str(getattr(package, "TITLE", folder.name)),
+        folder,
+        experiments,
+        tuple(sorted(claims, key=lambda claim: natural(claim.id))),
+        tuple(reference for experiment in experiments for reference in experiment.references),
+        tuple(_part(package, folder, "errata", "ERRATA")),
     )
+
+
+def _part(package: ModuleType, folder: Path, module: str, name: str) -> tuple[Any, ...]:
+    if not (folder / f"{module}.py").exists():
+        return ()
+    return tuple(getattr(importlib.import_module(f"{package.__name__}.{module}"), name))
+
+
+def _experiments(folder: Path) -> list[str]:
+    return [path.parent.name for path in folder.glob("*/experiment.py")] if folder.is_dir() else []
+
+
+def _added() -> Iterator[Path]:
+    return (Path(text) for text in os.environ.get(ADDED, "").split(os.pathsep) if text)
+
+
+def _package(folder: Path) -> ModuleType:
+    """The chapter's package; one outside of ours is imported as if it stood among them."""
+    name = f"{__name__}.{folder.name}"
+    if folder.parent != Path(__file__).parent and getattr(sys.modules.get(name), "__path__", None) != [str(folder)]:
+        for known in [key for key in sys.modules if key == name or key.startswith(f"{name}.")]:
+            del sys.modules[known]  # another folder of the same name
+        init = folder / "__init__.py"
+        spec: ModuleSpec | None = ModuleSpec(name, None, is_package=True)
+        if init.exists():
+            spec = importlib.util.spec_from_file_location(name, init, submodule_search_locations=[str(folder)])
+        assert spec is not None
+        spec.submodule_search_locations = [str(folder)]
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[name] = module
+        if spec.loader:
+            spec.loader.exec_module(module)
+    return importlib.import_module(name)

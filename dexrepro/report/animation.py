@@ -41,7 +41,7 @@ def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
     check_result(folder, "config.yaml", series=True)
     run = read_json(folder / "run.json")
     experiment = chapters.load(run["chapter"]).experiment(run["experiment"])
-    if not experiment.has("scene"):
+    if not experiment.function("scene"):
         raise InputError(f"experiment '{experiment.name}' has no scene to render")
     if kind == "mp4" and not shutil.which("ffmpeg"):
         raise InputError("format = mp4 is not allowed: it needs the program ffmpeg; use format=gif")
@@ -70,13 +70,13 @@ def film_of(folder: Path, experiment: Experiment) -> Path | None:
 
 def up_to_date(film: Path, experiment: Experiment) -> bool:
     """Whether a film is younger than its recording and than the code that shows it, the chapter's included."""
-    code = [Path(__file__), Path(rendering.__file__), *Path(str(experiment.module.__file__)).parent.glob("*.py")]
+    code = [Path(__file__), Path(rendering.__file__), *experiment.folder.parent.rglob("*.py")]
     sources = [film.parent.parent / "series" / f"{film.stem}.csv.gz", *code]
     return film.exists() and film.stat().st_mtime >= max(path.stat().st_mtime for path in sources)
 
 
 def _recording(folder: Path, experiment: Experiment, cases: list[str]) -> tuple[Recording, str]:
-    staged = experiment.has("stage")
+    staged = experiment.function("stage") is not None
     for name in cases:
         recording = load_recording(folder / "series", name)
         if recording.series and (staged or any(channel.endswith(".position") for channel in recording.series)):
@@ -89,9 +89,9 @@ def _frames(experiment: Experiment, config: Config, recording: Recording) -> Ite
     camera = film.camera if film else rendering.Camera()
     font = ImageFont.load_default(15)
     World.meshes = True
-    with experiment.module.scene(config) as world:
-        if experiment.has("stage"):
-            recording = experiment.module.stage(world, recording, config)
+    with experiment.simulation.scene(config) as world:
+        if experiment.function("stage"):
+            recording = experiment.simulation.stage(world, recording, config)
         start, end = (film.span if film else None) or (recording.time[0], recording.time[-1])
         shown = recording.time[recording.between(start, end)]
         instants = shown[np.unique(np.linspace(0, len(shown) - 1, FRAMES).round().astype(int))]

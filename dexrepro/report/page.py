@@ -65,7 +65,7 @@ class _Report:
         book = [chapter for chapter in book if chapter["experiments"]]
         index = self._equations(book)
         self._search_parameters(book)
-        common: dict[str, Any] = {"chapters": book, "provenance": self._provenance(book)}
+        common: dict[str, Any] = {"about": chapters.book(), "chapters": book, "provenance": self._provenance(book)}
         self._page("index", here="index", **common, **self._front(book))
         for chapter in book:
             self._page(f"chapter{chapter['number']}", "chapter", here=chapter["number"], chapter=chapter, **common)

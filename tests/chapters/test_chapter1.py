@@ -5,19 +5,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from dexrepro.chapters.chapter1 import (
-    dartboard,
-    force_tracking,
-    hand_over,
-    hold_and_move,
-    lyapunov,
-    ready_to_hold,
-    rigid_boxes,
-    two_nuts,
-)
+from dexrepro.chapters.chapter1.dartboard import experiment as dartboard
 from dexrepro.chapters.chapter1.followers import Follower
+from dexrepro.chapters.chapter1.force_tracking import experiment as force_tracking
+from dexrepro.chapters.chapter1.hand_over import experiment as hand_over
+from dexrepro.chapters.chapter1.hold_and_move import experiment as hold_and_move
 from dexrepro.chapters.chapter1.hold_path import hold_path
 from dexrepro.chapters.chapter1.line import carry, press
+from dexrepro.chapters.chapter1.lyapunov import experiment as lyapunov
+from dexrepro.chapters.chapter1.ready_to_hold import experiment as ready_to_hold
+from dexrepro.chapters.chapter1.rigid_boxes import experiment as rigid_boxes
+from dexrepro.chapters.chapter1.two_nuts import experiment as two_nuts
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.holding import AutoregressiveHolding, FixedDistance
 from dexrepro.physics.soft_object import Cushion

@@ -11,8 +11,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from dexrepro.chapters.chapter2 import balloon_movement, balloon_pair, batch, holding_line, planar_pair
-from dexrepro.chapters.chapter2.holding_sensitivity import _margins
+from dexrepro.chapters.chapter2 import balloon_pair, batch, planar_pair
+from dexrepro.chapters.chapter2.balloon_movement import experiment as balloon_movement
+from dexrepro.chapters.chapter2.holding_line import experiment as holding_line
+from dexrepro.chapters.chapter2.holding_sensitivity.experiment import margins_of
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
 from dexrepro.runner import live
@@ -105,7 +107,7 @@ def test_a_variant_that_swaps_two_laws_flips_their_verdict() -> None:
         for variant, values in (("default", numbers), ("worse", {"s8": 9.0}))
         for run, value in values.items()
     ]
-    margins = _margins(pd.DataFrame(rows))
+    margins = margins_of(pd.DataFrame(rows))
     assert margins["default"]["C2.19"] > 0 > margins["worse"]["C2.19"]
 
 

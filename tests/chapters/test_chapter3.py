@@ -2,7 +2,11 @@ import numpy as np
 import pytest
 
 from dexrepro import chapters, config
-from dexrepro.chapters.chapter3 import external_push, fixed_opening, moving_opening, reach, scene, settling_time
+from dexrepro.chapters.chapter3 import reach, scene
+from dexrepro.chapters.chapter3.external_push import experiment as external_push
+from dexrepro.chapters.chapter3.fixed_opening import experiment as fixed_opening
+from dexrepro.chapters.chapter3.moving_opening import experiment as moving_opening
+from dexrepro.chapters.chapter3.settling_time import experiment as settling_time
 from dexrepro.experiment import Config
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.kinematics import jacobian, point_jacobian

@@ -34,7 +34,7 @@ def configured(experiment, case, **changes):
 
 def simulated(experiment, case, **changes):
     config = configured(experiment, case, **changes)
-    module = chapters.load("4").experiment(experiment).module
+    module = chapters.load("4").experiment(experiment).simulation
     recording = module.simulate(config, lambda purpose: np.random.default_rng(0))
     return recording, module.measure(recording, config)
 

@@ -4,17 +4,19 @@ import json
 
 import numpy as np
 
-from dexrepro.chapters import chapter5
+from dexrepro import chapters
 from dexrepro.chapters.chapter5 import pen
 from dexrepro.cli import main
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.robots.pen_arm import pen_arm_angles
 
+chapter5 = chapters.load("5")
+
 
 def test_every_claim_and_erratum_names_metrics_of_an_experiment_with_cases():
     composed = compose_chapter("5")
-    cases = {e.name: set(experiment_cases(composed, e.name)) for e in chapter5.EXPERIMENTS}
-    names = [n for claim in chapter5.CLAIMS for n in claim.metrics] + [n for e in chapter5.ERRATA for n in e.evidence]
+    cases = {e.name: set(experiment_cases(composed, e.name)) for e in chapter5.experiments}
+    names = [n for claim in chapter5.claims for n in claim.metrics] + [n for e in chapter5.errata for n in e.evidence]
     for name in names:
         experiment, _, rest = name.partition(".")
         first, _, metric = rest.partition(".")
@@ -22,7 +24,7 @@ def test_every_claim_and_erratum_names_metrics_of_an_experiment_with_cases():
 
 
 def test_ids_are_unique():
-    for group in (chapter5.CLAIMS, chapter5.ERRATA):
+    for group in (chapter5.claims, chapter5.errata):
         assert len({item.id for item in group}) == len(group)
 
 

@@ -3,7 +3,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dexrepro.chapters.chapter6 import arm_obstacles, bimanual, constraint_cases, learning, planar_constraint, plane
+from dexrepro.chapters.chapter6 import bimanual, learning, plane
+from dexrepro.chapters.chapter6.arm_obstacles import experiment as arm_obstacles
+from dexrepro.chapters.chapter6.constraint_cases import experiment as constraint_cases
+from dexrepro.chapters.chapter6.planar_constraint import experiment as planar_constraint
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
 from dexrepro.primitives.barrier import Constraint

@@ -7,16 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dexrepro.chapters.chapter7 import (
-    desk,
-    fuzzy_generalisation,
-    impedance_stability,
-    obstacle_contact,
-    reactive_learning,
-    skills,
-    style_separation,
-    unseen_conditions,
-)
+from dexrepro.chapters.chapter7 import desk, skills
+from dexrepro.chapters.chapter7.fuzzy_generalisation import experiment as fuzzy_generalisation
+from dexrepro.chapters.chapter7.impedance_stability import experiment as impedance_stability
+from dexrepro.chapters.chapter7.obstacle_contact import experiment as obstacle_contact
+from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
+from dexrepro.chapters.chapter7.style_separation import experiment as style_separation
+from dexrepro.chapters.chapter7.unseen_conditions import experiment as unseen_conditions
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
 from dexrepro.robots.pen_arm import pen_arm_tip
@@ -110,7 +107,7 @@ def test_nearest_and_plane_return_what_they_know(cases: Any, learned: skills.Ski
 
 def test_learning_experiments_measure_what_they_simulate(cases: Any) -> None:
     for module, case in ((style_separation, "one_obstacle"), (fuzzy_generalisation, "main")):
-        config = cases(module.__name__.rpartition(".")[2], case)
+        config = cases(module.__name__.split(".")[-2], case)
         metrics = module.measure(module.simulate(config, None), config)
         assert all(np.isfinite(value) for value in metrics.values())
     config = cases("reactive_learning", "frozen", draws=2)

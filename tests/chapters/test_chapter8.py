@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from dexrepro import chapters
-from dexrepro.chapters.chapter8 import circle_tracking, sponge, task, unknown_object
+from dexrepro.chapters.chapter8 import task
+from dexrepro.chapters.chapter8.circle_tracking import experiment as circle_tracking
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
+from dexrepro.chapters.chapter8.sponge import experiment as sponge
+from dexrepro.chapters.chapter8.unknown_object import experiment as unknown_object
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, optimal_gain
 from dexrepro.runner import generator, live
@@ -16,7 +19,7 @@ CASES = {name: experiment_cases(compose_chapter("8"), name) for name in ("circle
 
 
 def run(experiment, case, **changes):
-    module = importlib.import_module(f"dexrepro.chapters.chapter8.{experiment}")
+    module = importlib.import_module(f"dexrepro.chapters.chapter8.{experiment}.experiment")
     values = {**CASES[experiment][case], **changes, "perturbation": 0.0, "seed": 0, "case": case}
     config = live(values)
     return module.simulate(config, lambda purpose: generator(0, experiment, purpose)), config

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from dexrepro import config
-from dexrepro.chapters.chapter3 import grasp_through_opening as joined
 from dexrepro.chapters.chapter3 import reach
+from dexrepro.chapters.chapter3.grasp_through_opening import experiment as joined
+from dexrepro.chapters.chapter3.grasp_through_opening.figures import FILM
 from dexrepro.runner import live
 from dexrepro.vision.tabletop import Item
 
@@ -61,7 +62,7 @@ def test_the_film_shows_the_object_rise_with_the_hand(settings):
     assert recording["raised"][-1] > settings.lifted
     with joined.scene(settings) as world:
         shown = joined.stage(world, recording, settings)
-        views = [world.snapshot(shown, time, joined.FILM.camera, (160, 132)) for time in (0.0, recording.time[-1])]
+        views = [world.snapshot(shown, time, FILM.camera, (160, 132)) for time in (0.0, recording.time[-1])]
     below, above = (np.argwhere(view[..., 2] > 1.4 * view[..., :2].max(axis=2)).mean(axis=0)[0] for view in views)
     assert below - above > 10  # rows of the picture
 

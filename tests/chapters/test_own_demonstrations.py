@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dexrepro.chapters.chapter5 import crossing, letters, obstacle_crossing
+from dexrepro.chapters.chapter5 import crossing, letters
+from dexrepro.chapters.chapter5.obstacle_crossing import experiment as obstacle_crossing
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.config import InputError, compose_chapter, experiment_cases
 from dexrepro.runner import generator, live

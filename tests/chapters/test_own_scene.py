@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dexrepro.chapters.own import scene
+from dexrepro.chapters.own.scene import experiment as scene
 from dexrepro.cli import run_overrides
 from dexrepro.config import InputError, compose_chapter, experiment_cases
 from dexrepro.experiment import Recording

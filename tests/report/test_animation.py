@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import types
 from pathlib import Path
 
@@ -34,11 +35,15 @@ def stage(world, recording, config):
 @pytest.fixture
 def swing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Experiment]:
     """A result folder whose arm turns by a right angle in two seconds."""
-    module = types.ModuleType("swing", "An arm swings.")
-    module.scene, module.stage, module.__file__ = scene, stage, str(tmp_path / "swing.py")
-    module.FILM = Film("turn", "The arm turns.", CAMERA, "tip", "Distance [mm]", scale=1e3, span=(0.5, 2.0))
-    (tmp_path / "swing.py").touch()
-    experiment = Experiment.of(module)
+    home = tmp_path / "chapter/swing"
+    home.mkdir(parents=True)
+    for name in ("swing", "swing.experiment", "swing.figures"):
+        monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
+        (home / f"{name.rpartition('.')[2]}.py").touch()
+    simulation, pictures = sys.modules["swing.experiment"], sys.modules["swing.figures"]
+    simulation.scene, simulation.stage = scene, stage
+    pictures.FILM = Film("turn", "The arm turns.", CAMERA, "tip", "Distance [mm]", scale=1e3, span=(0.5, 2.0))
+    experiment = Experiment("swing", home)
     chapter = types.SimpleNamespace(experiment=lambda name: experiment)
     monkeypatch.setattr(animation.chapters, "load", lambda number: chapter)
     folder = tmp_path / "results"
@@ -75,7 +80,7 @@ def test_a_film_is_up_to_date_until_its_recording_or_its_code_changes(swing: tup
     animation.render(folder)
     assert animation.up_to_date(film, experiment)
     later = film.stat().st_mtime + 10
-    for changed in (folder / "series/turn.csv.gz", Path(str(experiment.module.__file__))):
+    for changed in (folder / "series/turn.csv.gz", experiment.folder / "experiment.py"):
         before = changed.stat().st_mtime
         os.utime(changed, (later, later))
         assert not animation.up_to_date(film, experiment)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dexrepro.chapters.chapter8.claims import CIRCLE, OBJECT, SPONGE
 from dexrepro.experiment import Erratum
+
+CIRCLE, OBJECT, SPONGE = "circle_tracking", "unknown_object", "sponge"
 
 ERRATA = (
     Erratum(

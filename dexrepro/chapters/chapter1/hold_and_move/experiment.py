@@ -1,0 +1,215 @@
+"""A soft object held and moved by two Baxter arms along three operator trajectories, Section 1.5.2.2.
+
+The direct-teleoperated follower (DFR, right arm) obeys a synthetic operator; the assistive one (AFR, left arm) keeps
+its distance by one of the compared laws at 100 Hz. The object is a 0.3 kg body between viscoelastic contacts with
+friction, its stiffness and its filling shift. AFR knows the commands to its partner and its own noisy force sensor.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+import numpy as np
+from scipy import signal
+
+from dexrepro.chapters.chapter1.followers import Follower
+from dexrepro.chapters.chapter1.hold_and_move.claims import PRINTED
+from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
+from dexrepro.chapters.measures import rms
+from dexrepro.control.facing import facing
+from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.physics.elements import TipForce
+from dexrepro.physics.rendering import Camera
+from dexrepro.physics.sensor import Sensor
+from dexrepro.physics.soft_object import Cushion, SoftObject
+from dexrepro.physics.world import World
+from dexrepro.robots.baxter import baxter, posture
+from dexrepro.robots.inverse_kinematics import nearest
+from dexrepro.robots.kinematics import forward
+from dexrepro.robots.rotations import quaternion_from_rotation, rotation_from_quaternion
+
+RATE = 50.0
+SIDES = {"leader": "right", "follower": "left"}
+LEVEL = np.stack([(0.0, 0.0, -1.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], axis=1)  # R_D while the line is level
+VIEW = Camera(target=(0.5, 0.0, 0.3), distance=1.45, yaw=75.0, pitch=-18.0)
+BALL, TABLE = (0.35, 0.65, 0.85, 1.0), (0.85, 0.82, 0.78, 1.0)
+FLIP = np.diag([1.0, -1.0, -1.0])
+
+
+def middle(config: Config) -> Any:
+    """Centre of the object at the start [m]."""
+    return np.array(config.place)
+
+
+def scene(config: Config, rng: Any = None) -> World:
+    """Two arms that just touch an object on a table."""
+    world = World(step=config.step, perturbation=config.perturbation)
+    half = 0.5 * config.object.length * np.array([0.0, 1.0, 0.0])
+    for name, side in SIDES.items():
+        arm = baxter(side)
+        place, rotation = (middle(config) - half, LEVEL) if name == "leader" else (middle(config) + half, LEVEL @ FLIP)
+        sensor = Sensor(force_noise=config.sensor.noise, force_delay=config.sensor.delay * config.control_period)
+        start = nearest(arm, posture(side), place, rotation)
+        noise = rng("force sensor") if rng and name == "follower" else None
+        world.add_arm(name, arm, start, sensor=sensor if noise else Sensor(), rng=noise)
+    radius = config.object.radius
+    world.add_sphere("object", radius, middle(config), mass=config.object.mass, colour=BALL, angularDamping=0.2)
+    x, y, z = middle(config)
+    world.add_box("table", (0.5, 1.2, 0.04), (x + 0.05, y, z - radius - 0.02), colour=TABLE)
+    return world
+
+
+def joint_channels(joints: Any) -> dict[str, Any]:
+    """Joint angles (n, 14) [rad] of both arms as the channels of the World."""
+    return {f"{name}.position": joints[:, 7 * k : 7 * (k + 1)] for k, name in enumerate(SIDES)}
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    channels = {"time": recording.time, "object.pose": recording["object"], "force": recording["force"]}
+    return Recording(channels | joint_channels(recording["joints"]))
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    law, dt = config.law, config.control_period
+    images: dict[str, Any] = {}
+    with scene(config, rng) as world:
+        followers = {
+            name: Follower(plant.arm, np.array(plant.q), dt=dt, mass_error=config.arm.mass_error,
+                           gain=config.arm.gain, singular=config.arm.singular, posture=config.arm.posture,
+                           bandwidth=config.arm.bandwidth)
+            for name, plant in world.arms.items()
+        }  # fmt: skip
+        for name, plant in world.arms.items():
+            followers[name].reset(np.array(plant.q))
+        start = world.arm("leader").sense.tip
+        path = hold_path(config, start, rng(f"trajectory {config.trajectory}"))
+        rotations = path.rotation
+        facings = rotation_from_quaternion(facing(quaternion_from_rotation(rotations)))
+        contact = config.object.length
+        _fill(world, config, rng)
+        law.reset(0.0)
+        last = {"reference": 0.0, "measured": 0.0}
+
+        def lead(sense: Any) -> Any:
+            k = round(sense.time / dt)
+            return followers["leader"].go(sense, path.position[k], rotations[k])
+
+        def follow(sense: Any) -> Any:
+            k = round(sense.time / dt)
+            axis = path.axis[k]
+            distance = float((sense.tip - path.position[k]) @ axis)
+            force = max(0.0, float(sense.force @ axis))
+            wanted = float(law(distance - contact, force))
+            limit = config.speed_limit * dt
+            last["reference"] += min(limit, max(-limit, wanted - last["reference"]))
+            last["measured"] = force
+            target = path.position[k] + axis * (contact + last["reference"])  # Eq. (1.33) from the first contact on
+            return followers["follower"].go(sense, target, facings[k])
+
+        recording = world.run(
+            config.duration,
+            controllers={"leader": lead, "follower": follow},
+            control_period=dt,
+            probes={"reference": lambda: last["reference"], "measured": lambda: last["measured"]},
+            stop=lambda _: "object dropped" if world.bodies["object"].z < middle(config)[2] - 0.3 else None,
+            events=_photographs(world, path, images) if config.photograph else (),
+            record_every=round(dt / config.step),
+            on_divergence="stop",
+        )
+        _condense(recording, path, world, config)
+    recording.images = images
+    return recording
+
+
+def _photographs(world: World, path: HoldPath, images: dict[str, Any]) -> list[tuple[float, Any]]:
+    """Events that photograph the instants of Fig. 1.19."""
+    at = path.phases
+    instants = {
+        "a": 0.0, "b": at["tilt"] - 0.5, "c": at["swing"] - 0.2, "d": 0.5 * (at["swing"] + at["level"]),
+        "e": at["press"] - 0.2, "f": at["press"] + 2.5,
+    }  # fmt: skip
+
+    def shoot(name: str) -> None:
+        images[name] = world.render(camera=VIEW, size=(480, 340))
+
+    return [(round(when, 2), partial(shoot, name)) for name, when in instants.items()]
+
+
+def _fill(world: World, config: Config, rng: Any) -> None:
+    """The object's contacts, its varying stiffness and the shifting of what it is filled with."""
+    o, noise = config.object, rng("filling")
+    parts = {key: o[key] for key in ("fast", "slow", "fast_time", "slow_time")}
+    left, right = (Cushion(o.stiffness, config.step, **parts) for _ in range(2))
+    phase = rng("stiffness phase").uniform(0, 2 * np.pi)
+
+    def scale(time: float) -> float:
+        return 1.0 + o.modulation * math.sin(2 * math.pi * time / o.modulation_period + phase)
+
+    world.add(
+        SoftObject("grip", "object", ("leader", "follower"), (left, right), length=o.length, friction=o.friction,
+                   shear=o.shear, shear_damping=o.shear_damping, scale=scale)
+    )  # fmt: skip
+    b, a = signal.butter(1, 0.5, fs=100.0)
+    beans = signal.lfilter(b, a, noise.standard_normal((round(config.duration * 100) + 1, 3)), axis=0)
+    beans *= o.shifting / beans.std()
+    world.add(TipForce("filling", "object", lambda t, *_: beans[int(t * 100.0 + 1e-6)]))
+
+
+def _condense(recording: Recording, path: HoldPath, world: World, config: Config) -> None:
+    """Keep what is measured and drawn."""
+    poses = {name: forward(world.arm(name).arm, recording[f"{name}.position"]) for name in SIDES}
+    relative = np.swapaxes(poses["leader"][1], -1, -2) @ poses["follower"][1] @ FLIP
+    n = len(recording.time)
+    axis = path.axis[:n]
+    between = poses["follower"][0] - poses["leader"][0]
+    recording.series = {
+        "time": recording.time,
+        "force": recording["grip.force_follower"],
+        "measured": recording["measured"],
+        "reference": recording["reference"],
+        "distance": np.linalg.norm(between, axis=1),
+        "partner": poses["leader"][0] - path.position[0],
+        "tilt": path.tilt[:n],
+        "lag": np.linalg.norm(poses["leader"][0] - path.position[:n], axis=1),
+        # Turn of one tool against the other about the holding line.
+        "twist": np.arctan2(relative[:, 1, 0], relative[:, 0, 0]),
+        "pointing": np.arccos(np.clip(np.sum(between * axis, axis=1) / np.linalg.norm(between, axis=1), -1, 1)),
+        "slip": recording["grip.slip"],
+        "object": recording["object.pose"],
+        "joints": np.hstack([recording[f"{name}.position"] for name in SIDES]),
+    }
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    time, force, desired = recording.time, recording["force"], config.desired_force
+    late = recording.between(config.settled)
+    if not late.any():
+        return {"rmse": desired, "finished": 0}
+    error = force - desired
+    rise = np.flatnonzero(force >= 0.95 * desired)
+    early = time < config.settled
+    outside = np.flatnonzero((np.abs(error) > 0.1 * desired) & early)
+    return {
+        "rmse": rms(error[late]),
+        "rmse_measured": rms((recording["measured"] - desired)[late]),
+        "rise": float(time[rise[0]]) if len(rise) else config.duration,
+        "overshoot": float(max(0.0, force[early].max() / desired - 1.0)),
+        "settling": float(time[outside[-1]]) if len(outside) else 0.0,
+        "twist": float(np.rad2deg(np.abs(recording["twist"] - recording["twist"][0]).max())),
+        "pointing": float(np.rad2deg(recording["pointing"].max())),
+        "lag": float(recording["lag"].max()),
+        "slip": float(recording["slip"][-1]),
+        "finished": int(recording.status == "finished"),
+    }
+
+
+def summarise(metrics: Any, config: Config) -> Metrics:
+    ratios: Metrics = {}
+    for other in ("passive", "fixed"):
+        for trial in PRINTED:
+            own, rival = (metrics.get(f"{trial}_{law}", {}).get("rmse") for law in ("proposed", other))
+            if own and rival:
+                ratios[f"{other}_ratio_{trial}"] = rival / own
+    return ratios

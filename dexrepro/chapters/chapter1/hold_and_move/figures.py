@@ -1,0 +1,158 @@
+"""What ``hold_and_move`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.experiment import Config, Figure, Film, Recording
+
+from .claims import PRINTED
+from .experiment import VIEW
+
+FIGURES = {
+    "1.1": Figure(
+        "Simulated Baxter: the right arm (DFR) is teleoperated, the left arm (AFR) assists; the object is soft. The "
+        "book shows a photograph of a system of three robots.",
+        "Two arms of a Baxter robot hold a ball above a table.",
+    ),
+    "1.18": Figure(
+        "Contact force on AFR along three synthetic trajectories, simulated Baxter arms under torque; the book shows "
+        "measurements. Errors after the 8th second (right of the line) are in T1.B. Bottom: the first 1.5 s.",
+        "The proposed law keeps the contact force closest to 15 N on all three trajectories.",
+    ),
+    "1.19": Figure(
+        "Simulated Baxter. Instants of the task in the first trajectory, proposed law: start, object on the left, "
+        "tilted by pi/4, swinging along the holding line, level over the right target, pressed on it. Below: DFR's "
+        "motion and tilt. The book shows photographs.",
+        "Six instants of two arms that lift, tilt, swing and put down a ball.",
+    ),
+    "1.A": Figure(
+        "Our own tests of Fig. 1.18, first trajectory: force samples that are late by one control period, an object "
+        "twice as stiff, and gains that fit (T1.B). Bars: RMS force error after the 8th second.",
+        "One late sample or a stiffer object undoes the advantage of the printed gain.",
+    ),
+}
+TABLES = {"T1.B": "Force error after the 8th second along three trajectories, beside the book's nine numbers"}
+FILM = Film(
+    "t1_proposed", "Two arms lift the ball, tilt and swing it and put it down while the force stays at 15 N.", VIEW,
+    "force", "Contact force [N]", reference=15.0,
+)  # fmt: skip
+LAWS = {"proposed": "book", "passive": "rival", "fixed": "plain"}
+
+
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+    figures = {}
+    if all(f"{trial}_{law}" in recordings for trial in PRINTED for law in LAWS):
+        figures["1.18"] = _draw_forces(recordings, metrics, config)
+    shown = recordings.get("t1_proposed")
+    if shown and shown.images:
+        figures["1.1"] = _draw_scene(shown)
+        figures["1.19"] = _draw_task(shown)
+    if {"t1_proposed_late", "t1_passive_late"} <= set(metrics):
+        figures["1.A"] = _draw_limits(metrics)
+    return figures
+
+
+def _draw_forces(recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, axes = style.subplots(2, 3, height=3.8, sharey="row")
+    for column, trial in enumerate(PRINTED):
+        for law, role in reversed(LAWS.items()):
+            recording = recordings[f"{trial}_{law}"]
+            axes[0, column].plot(recording.time, recording["force"], label=law, **style.LINES[role])
+            early = recording.time <= 1.5
+            axes[1, column].plot(recording.time[early], recording["force"][early], **style.LINES[role])
+        numbers = [metrics[f"{trial}_{law}"]["rmse"] for law in LAWS]
+        axes[0, column].set_title("RMSE " + " / ".join(f"{value:.2f}" for value in numbers) + " N")
+        for row in (0, 1):
+            axes[row, column].axhline(config.desired_force, **style.LINES["reference"])
+        style.event(axes[0, column], config.settled, f"{config.settled:g} s")
+        axes[0, column].set_ylim(0, 30)
+        axes[1, column].set(xlabel="Time [s]", ylim=(0, 30))
+    axes[0, 0].set_ylabel("Contact force [N]")
+    axes[1, 0].set_ylabel("First 1.5 s [N]")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    best = all(
+        metrics[f"{t}_proposed"]["rmse"] < min(metrics[f"{t}_{law}"]["rmse"] for law in ("passive", "fixed"))
+        for t in PRINTED
+    )
+    style.title(
+        figure,
+        "The proposed law holds the force best on "
+        + ("all three trajectories" if best else "some of the trajectories only")
+        + " (proposed / passive / fixed)",
+    )
+    return figure
+
+
+def _draw_scene(recording: Recording) -> Any:
+    from dexrepro.report import style
+
+    figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
+    axis.imshow(style.trimmed(recording.images)["b"])
+    axis.set_axis_off()
+    style.title(figure, "Two simulated Baxter arms hold a soft object")
+    return figure
+
+
+def _draw_task(recording: Recording) -> Any:
+    from dexrepro.report import style
+
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 6.0))
+    grid = figure.add_gridspec(4, 3, height_ratios=(1.4, 1.4, 0.8, 0.6))
+    pictures = style.trimmed(recording.images)
+    words = ("start", "on the left", "tilted", "swinging", "over the right", "pressed")
+    for k, (name, word) in enumerate(zip("abcdef", words)):
+        axis = figure.add_subplot(grid[k // 3, k % 3])
+        axis.imshow(pictures[name])
+        axis.set_axis_off()
+        style.panel(axis, name, word)
+    path, tilt = figure.add_subplot(grid[2, :]), figure.add_subplot(grid[3, :])
+    for k, (label, role) in enumerate((("x", "plain"), ("y", "book"), ("z", "rival"))):
+        path.plot(recording.time, recording["partner"][:, k], label=label, **style.LINES[role])
+    path.set_ylabel("DFR [m]")
+    path.legend(ncols=3, loc="lower left")
+    tilt.plot(recording.time, np.rad2deg(recording["tilt"]), **style.LINES["book"])
+    tilt.set(xlabel="Time [s]", ylabel="Tilt [deg]")
+    style.title(figure, "One arm is led, the other keeps holding: left, tilt, swing, right, press")
+    return figure
+
+
+def _draw_limits(metrics: Any) -> Any:
+    from dexrepro.report import style
+
+    groups = {"as\nprinted": "", "one sample\nlate": "_late", "twice\nas stiff": "_stiff", "own\ngain": "_tuned"}
+    figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
+    for k, (law, role) in enumerate(LAWS.items()):
+        values = [metrics.get(f"t1_{law}{ending}", {}).get("rmse") for ending in groups.values()]
+        places = [(i + 0.27 * (k - 1), value) for i, value in enumerate(values) if value is not None]
+        bars = axis.bar(*zip(*places), width=0.25, color=style.LINES[role]["color"], label=law)
+        axis.bar_label(bars, fmt="%.2f", fontsize=6.5)
+    axis.set_xticks(range(len(groups)), groups)
+    axis.set_yscale("log")
+    axis.set_ylabel("RMS force error [N]")
+    axis.legend(ncols=3, loc="upper left", fontsize=6.5, handlelength=1.0, columnspacing=0.8)
+    axis.set_ylim(0.1, 10)
+    worse = metrics["t1_proposed_late"]["rmse"] > metrics["t1_passive_late"]["rmse"]
+    style.title(figure, "One late sample " + ("undoes" if worse else "does not undo") + " the advantage")
+    return figure
+
+
+def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+    rows = []
+    for case, values in metrics.items():
+        trial, _, law = case.partition("_")
+        if trial not in PRINTED:
+            continue
+        book = dict(zip(LAWS, PRINTED[trial])).get(law)
+        rows.append(
+            {"trajectory": trial[1:], "law": law.replace("_", " "), "RMSE [N]": values.get("rmse"), "book [N]": book}
+            | {"as measured [N]": values.get("rmse_measured"), "rise [s]": values.get("rise"),
+               "overshoot [-]": values.get("overshoot"), "settling [s]": values.get("settling"),
+               "twist [deg]": values.get("twist"), "object held": bool(values.get("finished"))}
+        )  # fmt: skip
+    return {"T1.B": pd.DataFrame(rows)}

@@ -1,0 +1,40 @@
+"""What ``lyapunov`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from dexrepro.experiment import Config, Figure, Recording
+
+FIGURES = {
+    "1.D": Figure(
+        "Left: V of Eq. (1.34) on the ramp of case 1, steps of 0.1 ms, for the law that knows z_d, the law that can be "
+        "built and the printed definition of e_f. Right: how the force error develops over 100 s for estimator gains L "
+        "around the bound of Routh's condition. Neither is in the book.",
+        "V falls at every step only for the ideal law; below an L of about 0.18 the force error grows.",
+    )
+}
+
+
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+    if not {"ideal", "built", "printed", "growth"} <= set(recordings):
+        return {}
+    from dexrepro.report import style
+
+    figure, (left, right) = style.subplots(1, 2, height=2.4)
+    for case, role in (("ideal", "book"), ("built", "rival"), ("printed", "printed")):
+        recording = recordings[case]
+        left.semilogy(recording.time, recording["lyapunov"], label=case, **style.LINES[role])
+    left.set(xlabel="Time [s]", ylabel="$V$ [-]", ylim=(1e-2, 1e4), xlim=(0, 6))
+    left.legend(loc="upper right")
+    frame = recordings["growth"].frames["growth"]
+    for column, role in zip(frame.columns[1:], ("printed", "extra1", "rival", "extra3", "plain", "book")):
+        right.semilogy(frame["time"], frame[column], label=f"L = {column}/s", **style.LINES[role])
+    right.set(xlabel="Time [s]", ylabel="Force error, largest\nof 10 s [N]", ylim=(1e-3, 1e3))
+    right.legend(loc="upper right", ncols=3)
+    share = 100 * (metrics["built"]["rising"] or 0)
+    style.title(
+        figure,
+        f"$V$ falls at every step only if $z_d$ is known; the law as built lets it rise {share:.0f} % of the time",
+    )
+    return {"1.D": figure}

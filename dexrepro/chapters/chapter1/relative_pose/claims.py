@@ -1,0 +1,34 @@
+"""What the book says about ``relative_pose``, as predicates over its metrics."""
+
+from __future__ import annotations
+
+from dexrepro.experiment import Claim, every, less, within
+
+CLAIMS = (
+    Claim(
+        "C1.09",
+        "1.6",
+        "Eq. (1.14) makes AFR face DFR for every orientation.",
+        every(less("relative_pose.default.facing", 1e-12), less("relative_pose.default.euler", 1e-12)),
+        where="Lemma 1.1",
+    ),
+    Claim(
+        "C1.11",
+        "1.5",
+        "Re-fixing makes no jump, and afterwards the tool turns as the leader does.",
+        every(less("relative_pose.default.fixing_jump", 1e-12), less("relative_pose.default.fixing_rotation", 1e-12)),
+        where="1.3.1",
+    ),
+    Claim(
+        "C1.15",
+        "1.15",
+        "The scale grows with the hand's speed from 1 to 8.",
+        every(
+            within("relative_pose.default.scale_least", 0.999, 1.001),
+            within("relative_pose.default.scale_most", 7.999, 8.001),
+            less("relative_pose.default.scale_steps_down", 0.5),
+        ),
+        where="Eq. (1.45)",
+        by_construction="It is Eq. (1.45), evaluated.",
+    ),
+)

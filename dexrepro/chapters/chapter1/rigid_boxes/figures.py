@@ -1,0 +1,100 @@
+"""What ``rigid_boxes`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pandas as pd
+
+from dexrepro.experiment import Config, Figure, Film, Recording
+from dexrepro.physics.rendering import Camera
+
+from .experiment import RELEASED, SIZES
+
+FIGURES = {
+    "1.17": Figure(
+        "Rigid boxes held by 0.12, 0.20 and 0.30 m wide sides, simulated Baxter arms, friction contact: pictures at "
+        "holding, carrying and after the drop; contact force on AFR; height of the box. Lines: the start poses. The "
+        "book shows photographs.",
+        "All three sizes are gripped, carried and dropped into the bin.",
+    ),
+    "1.B": Figure(
+        "Contact force on AFR with a rigid box while it is gripped and lifted, for five gains of the force law; the "
+        "gain printed for the soft object (0.25) is the last. The force then alternates with every control sample.",
+        "A small gain holds the rigid box quietly, from 0.02 on the force jumps from sample to sample.",
+    ),
+}
+TABLES = {"T1.F": "Boxes carried into the bin"}
+FILM = Film(
+    "medium", "Two arms grip a rigid box by friction, carry it and drop it into the bin.",
+    Camera(target=(0.5, -0.09, 0.22), distance=1.4, yaw=75.0, pitch=-22.0), "force_0", "Contact force [N]",
+)  # fmt: skip
+
+
+def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+    figures = {}
+    if all(size in recordings and recordings[size].images for size in SIZES):
+        figures["1.17"] = _draw_boxes(recordings, metrics, config)
+    gains = [case for case in ("medium", "gain2", "gain3", "gain10", "gain25") if case in recordings]
+    if len(gains) == 5:
+        figures["1.B"] = _draw_gains(gains, recordings, metrics, config)
+    return figures
+
+
+def _draw_boxes(recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 5.6))
+    grid = figure.add_gridspec(5, 3, height_ratios=(0.75, 0.75, 0.75, 1, 0.8))
+    pictures = style.trimmed(
+        {(size, name): picture for size in SIZES for name, picture in recordings[size].images.items()}
+    )
+    for column, size in enumerate(SIZES):
+        recording = recordings[size]
+        for row, name in enumerate(("held", "carried", "dropped")):
+            axis = figure.add_subplot(grid[row, column])
+            axis.imshow(pictures[size, name])
+            axis.set_axis_off()
+            if row == 0:
+                numbers = metrics[size]
+                axis.set_title(f"{size}: {numbers['successes']} of {numbers['runs']}")
+        force, height = figure.add_subplot(grid[3, column]), figure.add_subplot(grid[4, column])
+        part = recording.time < RELEASED + 0.8
+        for k in range(int(metrics[size]["runs"] or 0)):
+            if f"force_{k}" in recording:
+                force.plot(recording.time[part], recording[f"force_{k}"][part], color=style.BOOK, linewidth=0.5)
+                height.plot(recording.time[part], recording[f"height_{k}"][part], color=style.RIVAL, linewidth=0.7)
+        force.axhline(15.0, **style.LINES["reference"])
+        force.set_ylim(0, 30)
+        height.set(xlabel="Time [s]", ylim=(0, 0.45))
+        if column == 0:
+            force.set_ylabel("Force [N]")
+            height.set_ylabel("Height [m]")
+    wins = sum(metrics[size]["successes"] or 0 for size in SIZES)
+    runs = sum(metrics[size]["runs"] or 0 for size in SIZES)
+    style.title(figure, f"Rigid boxes of three sizes: {wins} of {runs} are carried into the bin")
+    return figure
+
+
+def _draw_gains(gains: Any, recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, axes = style.subplots(1, 5, height=2.0, sharey=True)
+    for axis, case in zip(axes, gains):
+        recording = recordings[case]
+        part = (recording.time > 2.0) & (recording.time < 6.4)
+        axis.plot(recording.time[part], recording["force_0"][part], color=style.BOOK, linewidth=0.6)
+        axis.axhline(15.0, **style.LINES["reference"])
+        axis.set(xlabel="Time [s]", title=f"{config.cases[case].law['gain']:g} m/(s N)", ylim=(0, 40))
+    axes[0].set_ylabel("Contact force [N]")
+    loud = [config.cases[case].law["gain"] for case in gains if (metrics[case]["rmse"] or 0.0) > 1.0]
+    found = f": from {min(loud):g} on the contact force jumps between samples" if loud else ""
+    style.title(figure, f"A rigid box wants a small gain{found}")
+    return figure
+
+
+def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+    columns = {"runs": "runs", "successes": "successes", "slip": "largest slip [m]", "rmse": "RMS force error [N]",
+               "bounces": "bounces", "switches": "switches", "least_moved": "least way [m]"}  # fmt: skip
+    rows = [{"case": case} | {text: metrics[case].get(key) for key, text in columns.items()} for case in recordings]
+    return {"T1.F": pd.DataFrame(rows)}

@@ -1,0 +1,40 @@
+"""What the book says about ``balloon_static``, as predicates over its metrics."""
+
+from __future__ import annotations
+
+from dexrepro.experiment import Claim, every, less, within
+
+STATIC = "balloon_static"
+_STARTS = ("off_80", "off_100")
+
+CLAIMS = (
+    Claim(
+        "C2.20",
+        "2.10",
+        "The follower finds the holding position from any initial offset.",
+        every(*(less(f"{STATIC}.{start}.lateral_offset", 2e-3) for start in _STARTS)),
+        where="2.4.2.1",
+    ),
+    Claim(
+        "C2.21",
+        "2.10",
+        "Both starts lead to the same destination.",
+        less(f"{STATIC}.destination_spread", 2e-3),
+        where="2.4.2.1",
+    ),
+    Claim(
+        "C2.22",
+        "2.10",
+        "The lateral forces f_x and f_z converge to zero.",
+        every(*(less(f"{STATIC}.{start}.lateral_force_time", 2.0) for start in _STARTS)),
+        where="2.4.2.1",
+    ),
+    Claim(
+        "C2.23",
+        "2.10",
+        "The force along the holding line converges to 10 N.",
+        every(*(within(f"{STATIC}.{start}.force_along", 9.8, 10.2) for start in _STARTS)),
+        where="2.4.2.1",
+        note="Within 5 % after about 9 s, a time that the smoothing sets.",
+    ),
+)

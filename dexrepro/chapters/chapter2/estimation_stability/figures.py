@@ -1,0 +1,47 @@
+"""What ``estimation_stability`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+
+FIGURES = {
+    "2.B": Figure(
+        "(a) Prediction error of the adaptation law with time counted from the start and all rates equal to c, fed "
+        "with the exact signals of Traj. 1; vertical lines: where the explicit step reaches its limit, dt c t^4 = 2. "
+        "(b) Fall of the Lyapunov function (2.19) for constant parameters, and the sum of its exact discrete "
+        "decrements. Not in the book.",
+        "With time counted from the start the law diverges when its step limit is passed.",
+    ),
+}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    growing = [case for case in recordings if case.startswith("rate")]
+    if not growing or "lyapunov" not in recordings:
+        return {}
+    from dexrepro.report import style
+
+    figure, (left, right) = style.subplots(1, 2, height=2.6)
+    for case, line in zip(growing, ("book", "rival", "extra1")):
+        run, look = recordings[case], style.LINES[line]
+        left.plot(run.time, np.abs(run["error"]), label=f"c = {config.cases[case].rate:g}", **look)
+        left.axvline(metrics[case]["predicted_time"], color=look["color"], linewidth=0.6)
+    left.set(yscale="log", ylim=(1e-4, 200), xlabel="Time [s]", ylabel="Prediction error [N]")
+    left.axvline(np.nan, color=style.REFERENCE, linewidth=0.6, label="predicted instant")
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower left", ncols=4)
+    style.panel(left, "a", "time from the start, equal rates")
+    run = recordings["lyapunov"]
+    fall = 1e3 * (run["lyapunov"][0] - run["lyapunov"])
+    right.plot(run.time, fall, label="measured", **style.LINES["book"])
+    right.plot(run.time, 1e3 * run["predicted_fall"], label="exact decrements, summed", **style.LINES["reference"])
+    right.set(xlabel="Time [s]", ylabel="$V(0) - V$ [$10^{-3}$]")
+    right.legend()
+    style.panel(right, "b", "constant parameters")
+    worst = 100 * max(metrics[case]["relative_difference"] or 0.0 for case in growing)
+    style.title(figure, f"Time from the start makes the law diverge within {worst:.0f} % of the predicted instant")
+    return {"2.B": figure}

@@ -1,0 +1,49 @@
+"""Four holding laws compared: the eighteen simulations of Table 2.1 and what decides between them (Sect. 2.4.1.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from dexrepro.chapters.chapter2 import planar_pair
+from dexrepro.chapters.chapter2.measures import force_error, mean
+from dexrepro.chapters.measures import rms
+from dexrepro.experiment import Config, Metrics, Recording
+
+RATE = 50.0
+SETTLED = 20.0  # s, the second period
+
+scene = planar_pair.scene
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    with scene(config) as world:
+        return planar_pair.run(world, config, config.law or config.laws[config.controller])
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    desired, (low, high) = config.desired_force, config.follower.workspace
+    reference, late = recording["reference"][:, 0], force_error(recording, desired, SETTLED)
+    return {
+        "rmse": rms(late),
+        **{f"rmse_{start}": rms(force_error(recording, desired, start)) for start in (0, 5, 10)},
+        "mean_error": mean(late),
+        "largest_error": float(np.abs(late).max()) if late.size else None,
+        "lost": mean((recording["object.force"] <= 0).astype(float)),
+        "bounded": mean(((reference < low) | (reference > high)).astype(float)),
+    }
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """What the regulation gains in groups 2 and 3, off minus on [N], mean over the laws both groups have."""
+    result: Metrics = {}
+    for group, pairs in {
+        "group2": (("s11", "s12"), ("s13", "s14")),
+        "group3": (("s15", "s16"), ("s17", "s18")),
+    }.items():
+        values = [[metrics.get(case, {}).get("rmse") for case in pair] for pair in pairs]
+        if all(value is not None for pair in values for value in pair):
+            result[f"{group}_gain"] = float(np.mean([off - on for off, on in values]))  # type: ignore[operator]
+    return result

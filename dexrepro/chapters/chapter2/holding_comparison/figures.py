@@ -1,0 +1,158 @@
+"""What ``holding_comparison`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter2.measures import shown
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+
+FIGURES = {
+    "2.8": Figure(
+        "Holding force of s1 to s18 of Table 2.1, solid with the regulation (2.8), dashed without, and the root mean "
+        "square of the force error over the second period (20 to 40 s). The book shows the time histories.",
+        "Force control is worst by far; with the regulation both estimating laws stay within a few per cent.",
+    ),
+    "2.A": Figure(
+        "The two estimating laws against each other in four settings: the reference tracked by the joint PD, by an arm "
+        "that realises the target impedance (2.25), and by the joint PD with velocity estimates as printed (2.12) or "
+        "from the total derivative; and all laws with gains tuned under one search budget. Not in the book.",
+        "The impedance lead helps in every setting but the one with the printed velocity estimate.",
+    ),
+}
+TABLES = {"T2.1": "The eighteen simulations of Table 2.1 with their force errors, and our further rows"}
+
+NAMES = {
+    "force": "F",
+    "force_integral": "F (integral)",
+    "passive_impedance": "PIm",
+    "no_impedance": "NoIm",
+    "impedance": "Im",
+}
+LINES = {"force": "plain", "passive_impedance": "rival", "no_impedance": "extra1", "impedance": "book"}
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
+) -> dict[str, pd.DataFrame]:
+    rows = []
+    for case in recordings:
+        parameters, found = config.cases[case], metrics[case]
+        rows.append(
+            {
+                "no": case,
+                "controller": _name(case, parameters),
+                "trajectory": parameters.leader.trajectory,
+                "regulation (2.8)": "yes" if parameters.follower.regulation else "no",
+                "f_d [N]": parameters.desired_force,
+                "gains": GAINS.get(case.partition("_")[0], "printed"),
+                "realisation": parameters.realisation,
+                **{f"RMSE [{start}, 40] s [N]": found[f"rmse_{start}"] for start in (0, 5, 10)},
+                "RMSE [20, 40] s [N]": found["rmse"],
+                "mean error [20, 40] s [N]": found["mean_error"],
+                "largest error [20, 40] s [N]": found["largest_error"],
+                "share of time without contact": found["lost"],
+                "share of time at the workspace bounds": found["bounded"],
+            }
+        )
+    return {"T2.1": pd.DataFrame(rows)}
+
+
+GAINS = {"tuned": "tuned", "printed": "printed; time from the start", "total": "printed; time from the start"}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    figures = {}
+    if {f"s{n}" for n in range(1, 19)} <= set(recordings):
+        figures["2.8"] = _draw_histories(recordings, metrics, config)
+    if {f"s{n}" for n in (5, 6, 7, 8)} <= set(recordings):
+        figures["2.A"] = _draw_settings(metrics, config)
+    return figures
+
+
+def _name(case: str, parameters: Config) -> str:
+    """The controller of a case; one with a law of its own goes by the name of the case."""
+    return case if parameters.law else NAMES[parameters.controller]
+
+
+def _alike(one: Config, other: Config) -> bool:
+    """Whether two cases share the leader's trajectory and the desired force."""
+    return (one.leader.trajectory, one.desired_force) == (other.leader.trajectory, other.desired_force)
+
+
+def _draw_histories(recordings: Any, metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, grid = style.subplots(4, 2, height=6.9, width_ratios=(3, 1))
+    groups = {"a": range(1, 3), "a ": range(3, 9), "b": range(9, 15), "c": range(15, 19)}
+    limits = {"a": (-0.2, 6), "a ": (0.6, 1.6), "b": (0.6, 1.6), "c": (2, 10)}
+    texts = {"a": "s1, s2: force control, Traj. 1", "a ": "s3 to s8, Traj. 1", "b": "s9 to s14, Traj. 2"}
+    texts["c"] = f"s15 to s18, {config.cases['s15'].desired_force:g} N"
+    for (histories, bars), (letter, numbers) in zip(grid, groups.items()):
+        cases = [f"s{n}" for n in numbers]
+        like = config.cases[cases[0]]
+        own = [case for case, its in config.cases.items() if its.law and letter != "a" and _alike(its, like)]
+        for case in cases + own:
+            parameters, run = config.cases[case], recordings[case]
+            look = dict(style.LINES["extra2" if parameters.law else LINES[parameters.controller]])
+            look["linestyle"] = "-" if parameters.follower.regulation else (0, (4, 2))
+            name = _name(case, parameters) if parameters.follower.regulation or parameters.law else None
+            histories.plot(run.time, run["object.force"], label=name, **look)
+            bars.barh(case, shown(metrics[case]["rmse"]), color=look["color"], alpha=1 if name else 0.45)
+        histories.axhline(config.cases[cases[0]].desired_force, **style.LINES["reference"])
+        histories.set(ylabel="$\\|F\\|$ [N]", ylim=limits[letter])
+        style.panel(histories, letter.strip(), texts[letter])
+        histories.legend(loc="upper right", ncols=4)
+        bars.set(xscale="log", xlim=(1e-3, 5))
+        bars.invert_yaxis()
+        bars.set_title("RMSE, 20 to 40 s")
+    looks = {"with (2.8), bars full": "-", "without (2.8), bars pale": (0, (4, 2))}
+    style.legend_below(figure, {name: {"color": style.REFERENCE, "linestyle": line} for name, line in looks.items()})
+    grid[-1, 0].set_xlabel("Time [s]")
+    grid[-1, 1].set_xlabel("RMSE [N]")
+    worst = 100 * max(
+        shown(metrics[f"s{n}"]["rmse"]) / config.cases[f"s{n}"].desired_force for n in range(6, 19, 2) if n != 10
+    )
+    style.title(
+        figure, f"With (2.8) and movement estimation the force error is at most {worst:.1f} % of the desired force"
+    )
+    return figure
+
+
+def _draw_settings(metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    settings = {
+        "joint PD": ("s6", "s8"),
+        "joint PD,\nno (2.8)": ("s5", "s7"),
+        "arm realises\n(2.25)": ("impedance_6", "impedance_8"),
+        "(2.12) as\nprinted": ("printed_6", "printed_8"),
+        "total\nderivative": ("printed_6", "total_8"),
+    }
+    settings = {name: pair for name, pair in settings.items() if set(pair) <= set(metrics)}
+    tuned = [case for case, parameters in config.cases.items() if case.startswith("tuned_") or parameters.law]
+    figure, (left, right) = style.subplots(1, 2, height=2.6, width_ratios=(3, 2))
+    place = np.arange(len(settings))
+    for shift, index, key in ((-0.2, 0, "no_impedance"), (0.2, 1, "impedance")):
+        values = [1e3 * shown(metrics[pair[index]]["rmse"]) for pair in settings.values()]
+        left.bar(place + shift, values, 0.38, color=style.LINES[LINES[key]]["color"], label=NAMES[key])
+    left.set_xticks(place, list(settings), fontsize=6.5)
+    left.set(ylabel="Force RMSE [mN]", yscale="log")
+    left.set_ylim(0.3, 60)
+    left.legend(ncols=2, loc="upper right")
+    style.panel(left, "a", f"Traj. 1, {config.cases['s5'].desired_force:g} N")
+    for trajectory, marker, colour in ((1, "o", style.REFERENCE), (2, "s", style.PLAIN)):
+        cases = [case for case in tuned if config.cases[case].leader.trajectory == trajectory]
+        names = [_name(case, config.cases[case]) for case in cases]
+        values = [1e3 * shown(metrics[case]["rmse"]) for case in cases]
+        right.plot(values, names, marker, color=colour, label=f"Traj. {trajectory}", ms=4)
+    right.set(xscale="log", xlabel="Force RMSE [mN]")
+    right.invert_yaxis()
+    right.legend()
+    style.panel(right, "b", "tuned gains, with (2.8)")
+    style.title(figure, "The impedance lead helps, but not with the velocity estimate as printed")
+    return figure

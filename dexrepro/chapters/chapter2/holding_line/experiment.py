@@ -1,0 +1,54 @@
+"""Keeping to the holding line: what the lateral regulation does for the holding force (Sect. 2.4.1.1)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from dexrepro.chapters.chapter2 import planar_pair
+from dexrepro.chapters.chapter2.measures import force_error, mean
+from dexrepro.chapters.measures import rms
+from dexrepro.control.holding_reference import KnownMovement
+from dexrepro.experiment import Config, Metrics, Recording
+
+RATE = 50.0
+SETTLED = 5.0  # s
+
+scene = planar_pair.scene
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    with scene(config) as world:
+        partner = world.arm("leader")
+        movement = KnownMovement(
+            movement=lambda: (config.rest_length + partner.x, partner.vx), stiffness=config.stiffness, dt=config.step
+        )
+        return planar_pair.run(world, config, config.law(estimation=movement))
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    late, force = recording.between(SETTLED), recording["object.force"]
+    offset = np.abs(recording["follower.tip"][:, 1] - recording["leader.tip"][:, 1])
+    length, without = config.rest_length - config.desired_force / config.stiffness, offset[late]
+    stretched = np.hypot(length, without.mean()) if without.size else length
+    return {
+        "rmse": rms(force_error(recording, config.desired_force, SETTLED)),
+        "mean_force": mean(force[late]),
+        "predicted_force": config.stiffness * (config.rest_length - stretched),
+        "mean_distance": mean(recording["object.length"][late]),
+        "lost": mean((force[1:] <= 0).astype(float)),
+        "largest_offset": float(without.max()) if without.size else None,
+        "survived": recording.simulated,
+    }
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    gains: Metrics = {}
+    for case in ("case1", "case2"):
+        rmse = [metrics.get(f"{case}_{switch}", {}).get("rmse") for switch in ("without", "with")]
+        off, on = (math.nan if value is None else value for value in rmse)
+        gains[f"{case}_gain"] = off - on
+    return gains

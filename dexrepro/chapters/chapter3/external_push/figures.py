@@ -1,0 +1,174 @@
+"""What ``external_push`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter3.measures import headed
+from dexrepro.chapters.chapter3.scene import FILMED
+from dexrepro.control.momentum_observer import MomentumObserver
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+
+FIGURES = {
+    "3.1": Figure(
+        "Response of one observer channel to a step of external torque for four gains, with 1 - exp(-K t) dashed "
+        "(computed). The book shows the block diagram.",
+        "The observer's response is that of a first-order lag with the time constant 1/K.",
+    ),
+    "3.11": Figure(
+        "External joint torque, true (dashed) and observed, of the three joints it loads most, and Dis_R, "
+        "during a push "
+        "of 30 N along +y on the middle of the forearm in reach 1. Simulated; box and lid do not touch the arm here.",
+        "The observed torque follows the true one with a small lag and the offset of the model's error.",
+    ),
+    "3.12": Figure(
+        "Distance to the target and Dis_R during the same push with and without observer compensation and null-space "
+        "torque (simulated).",
+        "A push moves the arm by millimetres; after its release the arm returns.",
+    ),
+    "3.B": Figure(
+        "Observer gain: relative error of the observed torque over the push, without and with noise on the momentum "
+        "(replayed from the recorded push with an exact model; ours, after the remark below Eq. (3.20)).",
+        "Without noise a larger gain is always better; with noise there is a best gain.",
+    ),
+}
+TABLES = {"T3.B": "Push: laws, models and directions", "T3.C": "Observer gain: lag and relative error"}
+FILM = Film(
+    "plus", "A push of 30 N on the forearm moves the arm by millimetres; it returns when let go.", FILMED,
+    "rcm_distance", "Dis_R [mm]", scale=1e3, span=(4.0, 9.5),
+)  # fmt: skip
+JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    figures: dict[str, Any] = {"3.1": _draw_steps()}
+    if "plus" in recordings:
+        figures["3.11"] = _draw_torques(recordings, metrics, config)
+        figures["3.12"] = _draw_effect(recordings, metrics, config)
+    if "exact_plus" in recordings:
+        figures["3.B"] = _draw_sweep(recordings["exact_plus"].frames["sweep"])
+    return figures
+
+
+def _draw_steps() -> Any:
+    from dexrepro.report import style
+
+    figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.3)
+    step, unit = 1e-3, np.eye(1)
+    for gain, line in zip((5, 20, 50, 200), ("extra1", "rival", "book", "extra2")):
+        observer, velocity, seen = MomentumObserver(gain=gain, dt=step), 0.0, []
+        for _ in range(400):
+            seen.append(float(observer(unit, np.array([velocity]), np.zeros(1), np.zeros(1))[0]))
+            velocity += step  # unit mass under a unit external torque
+        time = step * np.arange(400)
+        axes.plot(time, seen, label=f"$K_{{Ex}}$ = {gain}/s", **style.LINES[line])
+        label = r"$1 - \exp(-K_{Ex} t)$" if gain == 200 else None
+        axes.plot(time, 1 - np.exp(-gain * time), label=label, **style.LINES["reference"])
+    axes.set(xlabel="Time [s]", ylabel=r"Observed $\sigma_i$ [N m]")
+    axes.legend(loc="lower right")
+    style.title(figure, r"The observer lags by 1/$K_{Ex}$")
+    return figure
+
+
+def _draw_torques(recordings: Any, metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    recording, push = recordings["plus"], config.cases["plus"].push
+    figure, (top, middle, bottom) = style.subplots(3, 1, height=5.0, sharex=True)
+    busiest = np.abs(recording["external"]).max(axis=0).argsort()[::-1][:3]
+    for axes, case, name in ((top, "plus", "10 % error in masses"), (middle, "exact_plus", "exact masses")):
+        run = recordings.get(case, recording)
+        for joint, line in zip(sorted(busiest), ("book", "rival", "extra1")):
+            axes.plot(run.time, run["observed"][:, joint], label=f"{JOINTS[joint]} observed", **style.LINES[line])
+            axes.plot(run.time, run["external"][:, joint], label="true", **style.LINES["reference"])
+        axes.set_ylabel(r"$\tau_{Ex}$ [N m]")
+        axes.set_title(f"model with {name}")
+    handles, labels = top.get_legend_handles_labels()
+    once = dict(sorted(zip(labels, handles), key=lambda named: named[0] == "true"))
+    top.legend(once.values(), once, loc="upper right")
+    bottom.plot(recording.time, 1e3 * recording["rcm_distance"], **style.LINES["book"])
+    shown = (push.start - 1, push.start + push.duration + 2.1)
+    bottom.set(xlabel="Time [s]", ylabel="$Dis_R$ [mm]", ylim=(0, 12), xlim=shown)
+    for axes in (top, middle, bottom):
+        style.phase(axes, push.start, push.start + push.duration, "push" if axes is bottom else "")
+    errors = [100 * metrics[case]["observer_error"] for case in ("plus", "exact_plus") if case in metrics]
+    found = f", with an exact model by {errors[1]:.0f} %" if len(errors) > 1 else ""
+    style.title(figure, f"The observed torque errs by {errors[0]:.0f} %, mostly unknown weight{found}")
+    return figure
+
+
+CURVES = {
+    "plus": ("whole method", "book"),
+    "plain_plus": ("without observer torque", "extra1"),
+    "free_plus": ("without null-space torque", "extra2"),
+    "pos_plus": ("position-only task", "rival"),
+    "posplain_plus": ("position-only, without observer", "plain"),
+}
+
+
+def _draw_effect(recordings: Any, metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, (left, right) = style.subplots(1, 2, height=2.9)
+    push = config.cases["plus"].push
+    for case, (label, line) in CURVES.items():
+        if case in recordings:
+            recording = recordings[case]
+            left.plot(recording.time, 1e3 * recording["error"], label=label, **style.LINES[line])
+            right.plot(recording.time, 1e3 * recording["rcm_distance"], label=label, **style.LINES[line])
+    for axes in (left, right):
+        style.phase(axes, push.start, push.start + push.duration, "push")
+        axes.set(xlabel="Time [s]", xlim=(push.start - 1, push.start + push.duration + 2.1))
+    left.set(ylabel=r"$\|\tilde X\|$ [mm]", ylim=(0, 18))
+    right.set(ylabel="$Dis_R$ [mm]", ylim=(0, 80))
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=3)
+    found = metrics["plus"]
+    peak, tip = 1e3 * found["rcm_peak"], 1e3 * found["error_peak"]
+    style.title(
+        figure,
+        f"{np.abs(push.force).max():g} N move the arm {peak:.1f} mm off the centre and the end point by {tip:.1f} mm",
+    )
+    return figure
+
+
+def _draw_sweep(table: pd.DataFrame) -> Any:
+    from dexrepro.report import style
+
+    figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.4)
+    axes.plot(
+        table.gain, 100 * table.clean_error, marker="o", markersize=3, label="exact momentum", **style.LINES["book"]
+    )
+    axes.plot(
+        table.gain, 100 * table.noisy_error, marker="s", markersize=3, label="noisy momentum", **style.LINES["rival"]
+    )
+    axes.set(xscale="log", yscale="log", xlabel="$K_{Ex}$ [1/s]", ylabel="Error of $\\sigma$ [%]")
+    axes.legend()
+    best = table.gain.iloc[int(table.noisy_error.argmin())]
+    style.title(figure, f"With noise the best gain is near {best:g}/s")
+    return figure
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
+) -> dict[str, pd.DataFrame]:
+    names = ("observer_error", "observer_change_error", "observer_lag", "rcm_rest", "rcm_peak", "rcm_final",
+             "rcm_recovery_time", "error_peak", "limit_margin", "finished")  # fmt: skip
+    rows = [
+        {"case": case, "push y [N]": config.cases[case].push.force[1], **{name: values.get(name) for name in names}}
+        for case, values in metrics.items()
+        if case in config.cases
+    ]
+    tables = {"T3.B": headed(rows)}
+    if "exact_plus" in recordings:
+        headers = {
+            "gain": "K_Ex [1/s]",
+            "clean_error": "error [-]",
+            "lag": "lag [s]",
+            "noisy_error": "error, noise [-]",
+        }
+        tables["T3.C"] = recordings["exact_plus"].frames["sweep"].rename(columns=headers)
+    return tables

@@ -1,0 +1,36 @@
+"""What the book says about ``grasp_classes``, as predicates over its metrics."""
+
+from __future__ import annotations
+
+from dexrepro.experiment import Claim, Reference, greater, less
+
+CLASSES = "grasp_classes"
+
+CLAIMS = (
+    Claim(
+        "C3.19",
+        "3.C",
+        "The classifier reaches a training accuracy of 98 % after 25 epochs.",
+        greater(f"{CLASSES}.wide.train_accuracy", 0.98),
+        by_construction="Cornell's data, relabelled, is not available: synthetic scenes whose difficulty is ours.",
+        where="3.4.2.3",
+        note="With one seed of the network; fewer of the new scenes are told right (Fig. 3.C).",
+    ),
+    Claim(
+        "C3.20",
+        "3.C",
+        "Grasps outside the safety region can be told from those inside: at most a tenth of them passes for safe.",
+        less(f"{CLASSES}.wide.unsafe_called_safe", 0.1),
+        where="3.4.2.2",
+        note="Needs a patch that reaches beyond the safety margin (C3.20b) and enough scenes: 200 were taken "
+        "after 150 had let 7 of 60 pass.",
+    ),
+    Claim(
+        "C3.20b",
+        "3.C",
+        "A patch of 0.06 m, in which no wall can be seen from the margin of 0.06 m, does as well.",
+        less(f"{CLASSES}.narrow.unsafe_called_safe", 0.1),
+        source="ours",
+    ),
+)
+REFERENCES = (Reference(f"{CLASSES}.wide.train_accuracy", 0.98, "3.4.2.3", "-"),)

@@ -1,0 +1,111 @@
+"""What ``moving_opening`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from dexrepro.chapters.chapter3 import drawings
+from dexrepro.chapters.chapter3.measures import headed
+from dexrepro.chapters.chapter3.scene import FILMED
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+
+_SHOWN = "The simulated arm and the moving lid {} after its movement began. The book shows photographs."
+FIGURES = {
+    "3.13": Figure(_SHOWN.format("0 s"), "The arm stands in the hole of the lid before it moves."),
+    "3.14": Figure(
+        _SHOWN.format("1.25 s and 10 s") + " The path is closed, so that at 10 s the opening is back.",
+        "The arm stands in the hole of the lid while it is aside and after it has come back.",
+    ),
+    "3.15": Figure(
+        "Path of the moving remote centre, ours: the book draws its path without numbers. Seen from above and "
+        "over time.",
+        "The centre of the opening runs through a figure of eight of 10 cm by 6 cm in 10 s.",
+    ),
+    "3.16": Figure(
+        "Distance to the target and Dis_R while the opening moves (simulated; lid and box are collision bodies for the "
+        "whole method). The law knows, without noise or delay, where the opening is, and not how fast it moves.",
+        "The arm follows the moving opening within a few millimetres.",
+    ),
+}
+TABLES = {"T3.D": "Moving opening: laws and models"}
+FILM = Film(
+    "track", "The lid moves along a figure of eight while the arm stands in its opening and holds the target.", FILMED,
+    "rcm_distance", "Dis_R [mm]", scale=1e3, span=(4.0, 15.5),
+)  # fmt: skip
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    figures: dict[str, Any] = {}
+    run = recordings.get("track")
+    if run is None:
+        return figures
+    if run.images:
+        figures["3.13"] = drawings.picture(run.images["begin"], "0 s: the arm stands in the opening")
+        pair = {"1.25 s: the opening is aside": run.images["quarter"], "10 s: it has come back": run.images["end"]}
+        figures["3.14"] = drawings.pictures(pair, "The arm has followed the opening")
+    figures["3.15"] = _draw_path(run, metrics["track"], config.cases["track"])
+    figures["3.16"] = _draw_tracking(recordings, metrics, config)
+    return figures
+
+
+def _draw_path(run: Recording, found: Metrics, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, (left, right) = style.subplots(1, 2, height=2.4)
+    x, y, z = run["centre"].T
+    left.plot(x, y, **style.LINES["reference"])
+    left.plot(x[0], y[0], marker="*", color=style.REFERENCE, markersize=9, linestyle="none", label="start and end")
+    left.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    left.legend(loc="upper center", bbox_to_anchor=(0.5, 1.0))
+    for values, name, line in ((x, "x", "book"), (y, "y", "rival"), (z, "z", "extra1")):
+        (curve,) = right.plot(run.time, 1e3 * (values - values[0]), **style.LINES[line])
+        style.label_end(right, curve, name, {"x": 8, "z": -8}.get(name, 0))
+    style.phase(right, config.motion.start, config.motion.start + config.motion.period, "moving")
+    right.set(xlabel="Time [s]", ylabel="Shift of $P_R$ [mm]", ylim=(-60, 75))
+    speed = 1e3 * found["centre_speed_max"]  # type: ignore[operator]
+    style.title(figure, f"The opening moves at up to {speed:.0f} mm/s")
+    return figure
+
+
+CURVES = {
+    "track": ("whole method", "book"),
+    "free": ("without null-space torque", "extra2"),
+    "pos": ("position-only task", "rival"),
+    "posfree": ("position-only, without torque", "plain"),
+}
+
+
+def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, (left, right) = style.subplots(1, 2, height=2.7)
+    for case, (label, line) in CURVES.items():
+        if case in recordings:
+            run = recordings[case]
+            left.plot(run.time, 1e3 * run["error"], label=label, **style.LINES[line])
+            right.plot(run.time, 1e3 * run["rcm_distance"], label=label, **style.LINES[line])
+    motion = config.cases["track"].motion
+    for axes in (left, right):
+        style.phase(axes, motion.start, motion.start + motion.period, "opening moves")
+        axes.set_xlabel("Time [s]")
+    left.set(ylabel=r"$\|\tilde X\|$ [mm]", yscale="log", ylim=(1e-3, 2e3))
+    right.set(ylabel="$Dis_R$ [mm]", yscale="log", ylim=(1e-3, 2e3))
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=4)
+    found = metrics["track"]
+    far, tip = 1e3 * found["moving_distance_max"], 1e3 * found["moving_error_max"]
+    style.title(figure, f"The arm follows the opening within {far:.1f} mm while its end point errs by {tip:.1f} mm")
+    return figure
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
+) -> dict[str, pd.DataFrame]:
+    rows = [
+        {"case": case, "reading": drawings.describe(config.cases[case]), **values}
+        for case, values in metrics.items()
+        if case in config.cases
+    ]
+    return {"T3.D": headed(rows)}

@@ -1,0 +1,113 @@
+"""Settling of the error dynamics against the size of the first error, and the bound of Lemma 3.2 (Sect. 3.3.3)."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from dexrepro.control.fixed_time import secant, settling_bound
+from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.physics.model import RigidBodyModel
+from dexrepro.robots.baxter import baxter, posture
+
+Array = NDArray[np.float64]
+
+
+def simulate(config: Config, rng: Any) -> Recording:
+    directions = rng("directions").standard_normal((config.directions, 7))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    plant = ErrorDynamics(config)
+    first, second = config.first, config.second
+    if config.tune:
+        first, second = _tuned(plant, config, directions)
+    rows = []
+    for size, (number, direction) in itertools.product(config.errors, enumerate(directions)):
+        error = size * direction + config.perturbation
+        time, growth, torque = plant.settle(error, first, second)
+        rows.append({"error": size, "direction": number, "time": time, "growth": growth, "torque": torque})
+    recording = Recording(steps=plant.steps, simulated=plant.steps * config.step)
+    recording.frames["settling"] = pd.DataFrame(rows)
+    inertia = plant.largest_inertia(rng("postures"))
+    recording.frames["laws"] = pd.DataFrame([{"k11": first[0], "k21": second[0], "inertia_max": inertia}])
+    plant.model.close()
+    return recording
+
+
+class ErrorDynamics:
+    """The errors of Eqs. (3.24)-(3.27) about the untucked arm when what the dynamics need is known exactly.
+
+    de1/dt = e2 - k1(e1) e1, M de2/dt = -C e2 - e1 - k2(e2) e2; k(e) is the secant slope of the three terms. Steps are
+    linearly implicit.
+    """
+
+    def __init__(self, config: Config) -> None:
+        self.arm = baxter("right")
+        self.model, self.home, self.config, self.steps = RigidBodyModel(self.arm), posture("right"), config, 0
+
+    def settle(self, error: Array, first: Sequence[float], second: Sequence[float]) -> tuple[float, float, float]:
+        """Time [s] until V' is below its bound, largest relative growth of V' in a step, largest torque [N m]."""
+        config, model, h = self.config, self.model, self.config.step
+        e1 = error.copy()
+        e2 = secant(e1, first, *config.powers) * e1  # the arm is at rest, so e2 = -x_2d
+        before, growth, torque = np.inf, -1.0, 0.0
+        for k in range(round(config.duration / h)):
+            slope, damping = secant(e1, first, *config.powers), secant(e2, second, *config.powers)
+            q, dq = self.home + e1, e2 - slope * e1
+            mass = model.mass_matrix(q)
+            energy = 0.5 * float(e1 @ e1) + 0.5 * float(e2 @ mass @ e2)
+            growth, before = max(growth, energy / before - 1.0), energy
+            self.steps += 1
+            if energy <= config.settled:
+                return k * h, growth, torque
+            torque = max(torque, float(np.abs(e1 + damping * e2).max()))
+            e1 = (e1 + h * e2) / (1.0 + h * slope)
+            push = mass @ e2 - h * (e1 + self._coriolis(q, dq, e2))
+            e2 = np.linalg.solve(mass + h * np.diag(damping), push)
+        return float(config.duration), growth, torque
+
+    def _coriolis(self, q: Array, dq: Array, e2: Array) -> Array:
+        """C(q, dq) e2 (Christoffel's C) from the quadratic form c(v) = C(q, v) v."""
+        gravity = self.model.gravity(q)
+        both, one, other = (self.model.bias(q, v) - gravity for v in (dq + e2, dq, e2))
+        return 0.5 * (both - one - other)
+
+    def largest_inertia(self, rng: np.random.Generator) -> float:
+        """Largest eigenvalue of M [kg m^2] over 2000 random postures within the joint limits."""
+        postures = rng.uniform(self.arm.lower, self.arm.upper, (2000, 7))
+        return float(np.linalg.eigvalsh(np.array([self.model.mass_matrix(q) for q in postures])).max())
+
+
+def _tuned(plant: ErrorDynamics, config: Config, directions: Array) -> tuple[list[float], list[float]]:
+    """K11 and K21 that settle soonest from 1 rad (two directions) with no more torque than the printed gains need."""
+    errors = directions[:2]
+    allowed = config.allowed_torque
+    limit = max(plant.settle(e, allowed.first, allowed.second)[2] for e in errors)
+    best, found = np.inf, (config.first, config.second)
+    for f, g in itertools.product(config.sharing, repeat=2):
+        first, second = [config.first[0] * f, *config.first[1:]], [config.second[0] * g, *config.second[1:]]
+        runs = [plant.settle(e, first, second) for e in errors]
+        if max(run[2] for run in runs) <= limit * (1 + 1e-9) and max(run[0] for run in runs) < best:
+            best, found = max(run[0] for run in runs), (first, second)
+    return found
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    table, law = recording.frames["settling"], recording.frames["laws"].iloc[0]
+    worst = table.groupby("error")["time"].max()
+    metrics: Metrics = {f"settling_{size:g}".replace(".", "p"): float(worst[size]) for size in config.errors}
+    metrics["settling_max"] = float(worst.max())
+    metrics["growth"] = float(table.growth.max())
+    metrics["torque_1"] = float(table[table.error == 1.0].torque.max())
+    metrics["k11"], metrics["k21"] = float(law.k11), float(law.k21)
+    metrics["inertia_max"] = float(law.inertia_max)
+    if min(config.first[1:] + config.second[1:]) > 0 and not config.tune:
+        constants: Any = dict(inertia=metrics["inertia_max"], joints=7, share=config.gamma)
+        gains = (config.first, config.second, config.powers)
+        metrics["bound"] = settling_bound(*gains, **constants)
+        metrics["bound_printed"] = settling_bound(*gains, **constants, printed=True)
+    return metrics

@@ -1,0 +1,136 @@
+"""What ``payload_transfer`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.physics.rendering import Camera
+
+FIGURES = {
+    "4.11": Figure(
+        "The simulated right arm with its hanging 1.5 kg payload in the three phases: near B, near E and on the way "
+        "from A to D; orange: points A, B, C, green: D, E, F. The book shows photographs of the same phases.",
+        "Three pictures of a red seven-joint arm carrying a small sphere past coloured points.",
+    ),
+    "4.12": Figure(
+        "Tracking error of the nine trajectories of phase III: the broad network with what it learned in phases I "
+        "and II against the fixed network of 16384 nodes with the same training, and the prescribed bound; below, the "
+        "error of each trajectory for all methods. Simulated Baxter arm with gravity compensation for the bare arm. "
+        "The book shows the error of both methods.",
+        "With what it learned the broad network errs by about 21 mm, the fixed network by twice as much.",
+    ),
+}
+TABLES = {"T4.C": "Nine trajectories with a hanging payload: errors, bound and nodes by method"}
+FILM = Film(
+    "reuse", "With what it learned the arm carries the loose payload from A to D, E and F (drawn hanging straight).",
+    Camera(target=(0.42, -0.45, 0.08), distance=1.25, yaw=-60.0, pitch=-20.0), "error", "Tracking error [mm]",
+    scale=1e3, span=(24.0, 39.0),
+)  # fmt: skip
+
+
+BARS = {
+    "none": ("no network", "plain"),
+    "zero": ("broad, untrained", "extra1"),
+    "frozen": ("broad, frozen", "extra3"),
+    "rbf_medium": (r"RBF, $\eta$ = 1.5", "rival"),
+    "rbf_wide": (r"RBF, $\eta$ = 3", "extra2"),
+    "reuse": ("broad, trained", "book"),
+}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    drawn = {}
+    if "reuse" in recordings and recordings["reuse"].images:
+        drawn["4.11"] = _draw_phases(recordings["reuse"], config)
+    if {"reuse", "rbf_medium"} <= set(recordings):
+        drawn["4.12"] = _draw_errors(recordings, metrics, config)
+    return drawn
+
+
+def _draw_phases(recording: Recording, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, axes = style.subplots(1, 3, height=2.6)
+    shown = style.trimmed(recording.images)
+    for k, (panel, where) in enumerate(zip(axes, ("near B", "near E", "from A to D")), 1):
+        panel.imshow(shown[f"phase{k}"])
+        panel.set_axis_off()
+        panel.set_title(f"phase {'I' * k}, {config.cases['reuse'].task.pictured[k - 1]:.1f} s: {where}")
+    axes[0].annotate("orange: A, B, C; green: D, E, F", (0, -0.04), xycoords="axes fraction", size=7, va="top")
+    style.title(figure, "The payload hangs from the gripper on a ball joint")
+    return figure
+
+
+def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, axes = style.subplots(2, 3, height=4.4)
+    bound = config.cases["reuse"].law.bound
+    length = sum(config.cases["reuse"].task.times)
+    time = np.linspace(0, length, 200)
+    limit = 1e3 * bound.upper * ((bound.initial - bound.final) * np.exp(-bound.decay * time) + bound.final)
+    shown = [(case, *BARS[case]) for case in ("rbf_medium", "reuse")]
+    for case, label, line in shown:
+        recording, options = recordings[case], {**style.LINES[line], "linewidth": 0.7, "alpha": 0.8}
+        for number in range(2, int(recording["phase"].max()) + 1):
+            now = recording["phase"] == number
+            run, error = recording.time[now] - recording.time[now][0], 1e3 * recording["error"][now]
+            for panel, values in zip(axes.flat, (*error.T, np.linalg.norm(error, axis=1))):
+                panel.plot(run, values, label=label if number == 2 else None, **options)
+    for panel, name in zip(axes.flat, ("$z_{1,x}$ [mm]", "$z_{1,y}$ [mm]", "$z_{1,z}$ [mm]", r"$\|z_1\|$ [mm]")):
+        panel.set(ylabel=name, xlabel="Time [s]", xlim=(0, length))
+    for panel in axes[0]:
+        style.band(panel, time, -limit, limit, zorder=-5)
+        panel.set_ylim(-220, 220)
+    style.legend_below(figure, {label: style.LINES[line] for _, label, line in shown})
+    _draw_bars(figure, axes, metrics)
+    reuse, fixed = metrics["reuse"]["rmse_mm"], metrics["rbf_medium"]["rmse_mm"]
+    style.title(
+        figure, f"Trained, the broad network errs by {reuse:.0f} mm, a fixed one by {fixed:.0f} mm (bound: grey)"
+    )
+    return figure
+
+
+def _draw_bars(figure: Any, axes: Any, metrics: Mapping[str, Metrics]) -> None:
+    from dexrepro.report import style
+
+    grid = axes[1, 1].get_gridspec()
+    for panel in axes[1, 1:]:
+        panel.remove()
+    panel = figure.add_subplot(grid[1, 1:])
+    shown = [case for case in BARS if case in metrics]
+    for k, case in enumerate(shown):
+        runs = [value for name, value in metrics[case].items() if name.startswith("trajectory")]
+        panel.barh(k, metrics[case]["rmse_mm"], color=style.LINES[BARS[case][1]]["color"], alpha=0.6)
+        panel.plot(
+            runs, np.full(len(runs), k) + np.linspace(-0.25, 0.25, len(runs)), ".", color="#333333", markersize=3
+        )
+    panel.set_yticks(range(len(shown)), [BARS[case][0] for case in shown])
+    panel.set(xlabel="RMSE of a trajectory (dots) and mean (bar) [mm]")
+
+
+COLUMNS = {
+    "rmse_mm": "mean RMSE [mm]",
+    "worst_rmse_mm": "worst RMSE [mm]",
+    "oscillation_mm_s": "rms error rate [mm/s]",
+    "max_usage": "largest share of the bound",
+    "violations": "samples outside",
+    "nodes_phase1": "nodes after phase I",
+    "nodes_phase2": "nodes after phase II",
+    "most_nodes": "most nodes",
+    "hand_tilt": "hand tilt (sine)",
+}
+
+
+def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    rows = [
+        {"case": case, **{label: found.get(name) for name, label in COLUMNS.items()}}
+        for case, found in metrics.items()
+        if case in config.cases
+    ]
+    return {"T4.C": pd.DataFrame(rows)}

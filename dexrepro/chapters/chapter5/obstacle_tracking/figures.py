@@ -1,0 +1,107 @@
+"""What ``obstacle_tracking`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter5 import crossing, pen
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.physics.rendering import Camera
+
+FIGURES = {
+    "5.7": Figure(
+        "The simulated scene: cubes of 2 cm with a lip on top, start (green), nine goals (orange) and the arm at its "
+        "start (rendered; the book shows a photograph).",
+        "An arm in front of a stack of cubes with nine goals behind it.",
+    ),
+    "5.9": Figure(
+        "The arm crosses two blocks (above) and three (below) to the central goal, four instants each (rendered from "
+        "the simulated run; the book shows photographs).",
+        "The arm lifts its pen over the stack and reaches the goal behind it.",
+    ),
+    "5.F": Figure(
+        "Share of the bound that the joint errors use (all 18 runs) and smallest distance of the tracked tip from the "
+        "obstacle for every goal. Ours.",
+        "All 18 crossings stay inside the bound and clear of the obstacle.",
+    ),
+}
+TABLES = {"T5.J": "Tracked crossings: clearance [cm], bound used, tip error [mm], distance from the goal [mm]"}
+FILM = Film(
+    "film3", "The arm lifts the pen over three cubes and puts it down at the central goal.",
+    Camera(target=(0.12, -0.01, -0.035), distance=0.46, yaw=68.0, pitch=-22.0, field_of_view=40.0), "clearance",
+    "Pen to obstacle [mm]", scale=10.0,
+)  # fmt: skip
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    from dexrepro.report import style
+
+    figures = {}
+    if {"film2", "film3"} <= set(recordings):
+        figure, axes = style.plt.subplots(1, 1, figsize=(style.ONE_COLUMN, 2.5))
+        axes.imshow(style.trimmed({"start": recordings["film3"].images["at0"]})["start"])
+        axes.set_axis_off()
+        style.title(figure, "The arm, three cubes with their lip, and nine goals")
+        figures["5.7"] = figure
+        figures["5.9"] = _filmstrip(recordings, config)
+    if sum(case.startswith(("two_", "three_")) for case in recordings) == 18:
+        figures["5.F"] = _draw_runs(recordings, metrics, config)
+    return figures
+
+
+def _filmstrip(recordings: Mapping[str, Recording], config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, grid = style.subplots(2, len(config.film), height=3.2)
+    film = [(case, k) for case in ("film2", "film3") for k in range(len(config.film))]
+    pictures = style.trimmed({(case, k): recordings[case].images[f"at{k}"] for case, k in film})
+    for row, case in zip(grid, ("film2", "film3")):
+        for k, (axes, time) in enumerate(zip(row, config.film)):
+            axes.imshow(pictures[case, k])
+            axes.set_axis_off()
+            axes.set_title(f"{case[-1]} blocks, {time:g} s")
+    style.title(figure, "The arm carries its pen over two and three blocks")
+    return figure
+
+
+def _draw_runs(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, (left, right) = style.subplots(1, 2, height=2.3, width=style.TWO_COLUMNS)
+    places = crossing.goals(config)
+    for prefix, colour, marker, shift in (("two_", style.EXTRA[0], "o", -0.15), ("three_", style.BOOK, "s", 0.15)):
+        for k in range(len(places)):
+            recording = recordings[f"{prefix}{k}"]
+            usage = pen.bound_use(recording, config)
+            left.plot(recording.time, usage, color=colour, linewidth=0.5)
+        values = [metrics[f"{prefix}{k}"]["clearance"] for k in range(len(places))]
+        right.plot(np.arange(9) + shift, values, marker, ms=4, color=colour, label=f"{prefix[:-1]} blocks")
+    left.axhline(1, **style.LINES["reference"])
+    left.set(yscale="log", ylim=(1e-4, 2), xlabel="Time [s]", ylabel="Largest share\nof the bound [-]")
+    right.axhline(0, **style.LINES["reference"])
+    right.set_xticks(range(9), [f"{x:g}\n{y:g}" for x, y, _ in places])
+    right.set(xlabel="Goal x, y [cm]", ylabel="Clearance of the tip [cm]", ylim=(-0.1, 1.6))
+    right.legend()
+    runs = [values for case, values in metrics.items() if case.startswith(("two_", "three_"))]
+    good = sum((values["bound_use"] or 2.0) < 1 and (values["clearance"] or -1.0) > 0 for values in runs)
+    style.title(figure, f"{good} of {len(runs)} crossings stay inside the bound and clear of the obstacle")
+    return figure
+
+
+def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    names = {"clearance": "clearance [cm]", "bound_use": "largest share of the bound", "tip_rms": "tip error RMS [mm]",
+             "end_error": "distance from the goal [mm]"}  # fmt: skip
+    rows = [
+        {
+            "blocks": 2 if case.startswith("two") else 3,
+            "goal": case.split("_")[1],
+            **{text: values[name] for name, text in names.items()},
+        }
+        for case, values in metrics.items()
+        if case.startswith(("two_", "three_"))
+    ]
+    return {"T5.J": pd.DataFrame(rows)}

@@ -1,0 +1,27 @@
+"""What the book says about ``arm_obstacles``, as predicates over its metrics."""
+
+from __future__ import annotations
+
+from dexrepro.experiment import Claim, every, greater, less
+
+ARM = "arm_obstacles"
+
+CLAIMS = (
+    Claim(
+        "C6.16",
+        "6.4",
+        "The arm on the original path hits the new box.",
+        less(f"{ARM}.original.distance_new", 0.0),
+        where="6.4.1",
+        by_construction="the box was placed across the path",
+    ),
+    Claim(
+        "C6.17",
+        "6.5",
+        "The arm on the constrained path passes all boxes.",
+        every(*(greater(f"{ARM}.constrained.distance_{box}", 0.0) for box in ("first", "second", "new"))),
+        where="6.4.1",
+        note="Fragile: inflating the box by the tool's tip instead of the wrist, or passing between box and torso, "
+        "makes the arm touch (Table T6.Sc).",
+    ),
+)

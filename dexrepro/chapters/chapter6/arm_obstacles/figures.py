@@ -1,0 +1,119 @@
+"""What ``arm_obstacles`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.physics.rendering import Camera
+
+from .experiment import BOXES, TOP
+
+FIGURES = {
+    "6.3": Figure(
+        "The simulated scene from above: two old boxes (orange), the new one (blue), the learned path (grey) and the "
+        "constrained one. The book shows a photograph of the same arrangement.",
+        "The learned path runs through the new box, the constrained one round it.",
+    ),
+    "6.4": Figure(
+        "Simulated arm on the learned path at five instants (contacts off) and the smallest distance of the whole arm "
+        "to each box. The book shows photographs.",
+        "On the learned path the arm enters the new box.",
+    ),
+    "6.5": Figure(
+        "Simulated arm on the constrained path at five instants and the smallest distance of the whole arm to each "
+        "box.",
+        "On the constrained path the whole arm passes all three boxes.",
+    ),
+}
+TABLES = {"T6.Sc": "Variants of the detour, the law and the contacts on the arm"}
+FILM = Film(
+    "constrained", "The constrained path takes the whole arm round the new, blue box.",
+    Camera(target=(0.5, -0.25, 0.13), distance=1.5, yaw=40.0, pitch=-35.0, field_of_view=45.0), "distance_new",
+    "Distance to the new box [mm]", scale=1e3,
+)  # fmt: skip
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
+) -> dict[str, pd.DataFrame]:
+    rows = []
+    for case, numbers in metrics.items():
+        distances = {f"arm to {name} box [cm]": 100 * float(numbers[f"distance_{name}"] or 0) for name in BOXES}
+        rest = {
+            "tip path to new box [cm]": 100 * float(numbers["path_to_new"] or 0),
+            "largest distance to reference [cm]": numbers["e_max"],
+            "projected steps": numbers["projections"],
+            "contact peak [N]": numbers.get("contact_peak"),
+        }
+        rows.append({"case": case, **distances, **rest})
+    return {"T6.Sc": pd.DataFrame(rows)}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    figures = {}
+    for identifier, case in (("6.4", "original"), ("6.5", "constrained")):
+        if case in recordings:
+            figures[identifier] = _draw_run(recordings[case], metrics[case])
+    if {"original", "constrained"} <= set(recordings):
+        figures["6.3"] = _draw_scene(recordings["original"], recordings["constrained"], config)
+    return figures
+
+
+def _draw_scene(original: Recording, constrained: Recording, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.0)
+    image = constrained.images["top"]
+    axes.imshow(image)
+    for run, line in (
+        (original, {**style.LINES["plain"], "label": "learned path"}),
+        (constrained, {**style.LINES["book"], "label": "constrained path"}),
+    ):
+        axes.plot(*_pixels(run["desired"], image.shape).T, **line)
+    figure.legend(loc="outside lower center", ncols=2)
+    for name, text, shift in (("first", "old", -30), ("second", "old", 16), ("new", "new", -32)):
+        spot = _pixels(np.array(config.boxes[name]), image.shape)
+        axes.annotate(text, spot, xytext=(shift, -2), textcoords="offset points", fontsize=7)
+    axes.set(xlim=(0, image.shape[1]), ylim=(image.shape[0], 0))
+    axes.axis("off")
+    style.title(figure, "The learned path crosses the new box, the constrained one goes round it")
+    return figure
+
+
+def _pixels(points: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+    """Where points (n, 2) [m] at the height of the camera's target appear in the picture from above."""
+    scale = shape[0] / 2 / np.tan(np.radians(TOP.field_of_view) / 2) / TOP.distance
+    offset = (points - np.array(TOP.target[:2])) * scale
+    return np.array([shape[1], shape[0]]) / 2 + offset * [1, -1]
+
+
+def _draw_run(run: Recording, numbers: Metrics) -> Any:
+    from dexrepro.report import style
+
+    shots = style.trimmed({name: run.images[name] for name in sorted(run.images) if name != "top"})
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 3.5))
+    grid = figure.add_gridspec(2, len(shots), height_ratios=[1.1, 1.3])
+    for i, (name, image) in enumerate(shots.items()):
+        axes = figure.add_subplot(grid[0, i])
+        axes.imshow(image)
+        axes.axis("off")
+        style.panel(axes, "abcdef"[i], f"{name.partition('_')[2]} s")
+    axes = figure.add_subplot(grid[1, :])
+    for name, line in zip(BOXES, ("extra1", "extra2", "book")):
+        axes.plot(run.time, 100 * run[f"distance_{name}"], label=f"{name} box", **style.LINES[line])
+    axes.axhline(0, **style.LINES["reference"])
+    axes.set(xlabel="Time [s]", ylabel="Distance of arm [cm]")
+    axes.legend(loc="upper center")
+    closest = {name: 100 * float(numbers[f"distance_{name}"] or 0) for name in BOXES}
+    if closest["new"] < 0:
+        text = f"On the learned path the arm runs {-closest['new']:.1f} cm into the new box"
+    else:
+        text = f"On the constrained path the whole arm clears the boxes by {min(closest.values()):.1f} cm or more"
+    style.title(figure, text)
+    return figure

@@ -1,0 +1,95 @@
+"""What ``keep_out`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+
+FIGURES = {
+    "6.C": Figure(
+        "(a) A straight reach with a disk to stay out of, used as the reference point of the outside constraint: end "
+        "positions are dots. The consistent law cancels the primitive, so with the disk as its reference it does not "
+        "move to the goal and only draws away from the disk. (b) Distance to the centre of a disk that crosses the "
+        "path; the book's route, a tube about a forecast detour, against the filter and the outside law. Ours; Sect. "
+        "6.5 describes moving obstacles.",
+        "The outside law stops before the obstacle; the tube about a detour and the filter pass it.",
+    ),
+}
+TABLES = {"T6.C": "Laws that stay outside of a still and of a moving disk"}
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
+) -> dict[str, pd.DataFrame]:
+    rows = []
+    for case, numbers in metrics.items():
+        c = config.cases[case]
+        rows.append(
+            {
+                "case": case,
+                "route": c.route,
+                "law": c.cdmp.law,
+                "smallest distance / radius": numbers["distance_share"],
+                "goal error [cm]": numbers["goal_error_worst"],
+                "runs that stepped over": f"{numbers['stepped_over']} of {len(c.offsets)}",
+            }
+        )
+    return {"T6.C": pd.DataFrame(rows)}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    still = {
+        "still_printed": "printed",
+        "still_feedforward": "book",
+        "still_consistent": "extra1",
+        "still_filter": "rival",
+    }
+    moving = {
+        "moving_detour_feedforward": "book",
+        "moving_detour_printed": "printed",
+        "moving_filter": "rival",
+        "moving_outside": "extra2",
+    }
+    if not set(still) | set(moving) <= set(recordings):
+        return {}
+    from dexrepro.report import style
+
+    figure, (left, right) = style.subplots(1, 2, height=2.8)
+    shown = config.cases["still_printed"]
+    angle = np.linspace(0, 2 * np.pi, 100)
+    place = np.array([shown.reach / 2, shown.offsets[1]])
+    left.fill(*(place[:, None] + shown.radius * np.array([np.cos(angle), np.sin(angle)])), color="#A8DCF0", linewidth=0)
+    for case, line in still.items():
+        path = recordings[case]["position"][:, 2:4]
+        path = path[np.isfinite(path).all(axis=1)]
+        left.plot(*path.T, label=case.replace("still_", ""), **style.LINES[line])
+        left.plot(*path[-1], "o", color=style.LINES[line]["color"], markersize=3.5)
+    moved = recordings["still_consistent"]["position"]
+    way = 1e4 * float(np.linalg.norm(moved[-1, 2:4] - moved[0, 2:4]))
+    left.annotate(
+        f"consistent: ends\n{way:.1f} µm from its start", (0, 0), (0.1, -1.6), fontsize=6.5,
+        color=style.LINES["extra1"]["color"], arrowprops={"arrowstyle": "-", "linewidth": 0.5, "color": "#444444"},
+    )  # fmt: skip
+    left.set(aspect="equal", xlabel="x [cm]", ylabel="y [cm]", xlim=(-0.5, 10.5), ylim=(-2, 3))
+    left.legend(loc="upper left", ncols=2, fontsize=6.5)
+    for case, line in moving.items():
+        run = recordings[case]
+        right.plot(
+            run.time, run["distance"][:, 0], label=case.replace("moving_", "").replace("_", ", "), **style.LINES[line]
+        )
+    right.axhline(shown.radius, **style.LINES["reference"])
+    right.annotate(
+        "edge of the disk", (0.1, shown.radius), xytext=(0, -2), textcoords="offset points", fontsize=7, va="top"
+    )
+    right.set(xlabel="Time [s]", ylabel="Distance to the centre [cm]", ylim=(0, 9.5))
+    right.legend(loc="upper center", fontsize=6.5, ncols=2)
+    style.panel(left, "a", "still disk")
+    style.panel(right, "b", "disk that crosses the path")
+    missed = metrics["still_feedforward"]["goal_error"]
+    style.title(figure, f"The outside law stops {missed:.1f} cm or more before the goal; a tube about a detour passes")
+    return {"6.C": figure}

@@ -1,0 +1,92 @@
+"""What ``obstacle_terms`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter6 import plane
+from dexrepro.experiment import Config, Figure, Metrics, Recording
+
+FIGURES = {
+    "6.D": Figure(
+        "(a) Sub-skill 2 past the triangle: steering [16] with three representations, dynamic potential [39], "
+        "filter and constrained primitive. (b) Steering over the heading error. (c) Distance to a point obstacle "
+        "over the offset of a straight reach. (d) Bars passed by steering, of five offsets. Ours, on Sect. 6.5.",
+        "Steering fails for exact alignment with a point and for wide obstacles; with care it passes the triangle.",
+    ),
+}
+TABLES = {
+    "T6.D": "Clearance to the triangle with standard and with tuned parameters (20 settings each), and cost a step",
+    "T6.E": "Bars passed, of five offsets, by half-width and representation",
+}
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
+) -> dict[str, pd.DataFrame]:
+    rows, bars = [], []
+    for case in recordings:
+        numbers = metrics[case]
+        rows.append(
+            {
+                "method": case,
+                "clearance, standard [cm]": numbers["clearance"],
+                "goal error, standard [cm]": numbers["goal_error"],
+                "clearance, tuned [cm]": numbers.get("tuned_clearance"),
+                "settings of 20 that pass": numbers.get("settings_that_pass"),
+                "operations a step": numbers["operations"],
+            }
+        )
+        counts = {
+            name.removeprefix("bars_passed_").removesuffix("mm") + " mm": value
+            for name, value in numbers.items()
+            if name.startswith("bars_")
+        }
+        if counts:
+            bars.append({"method": case, **counts})
+    return {"T6.D": pd.DataFrame(rows), "T6.E": pd.DataFrame(bars)}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    lines = {
+        "centroid": "extra1",
+        "closest": "extra2",
+        "boundary": "extra3",
+        "potential": "rival",
+        "filter": "plain",
+        "constrained": "book",
+    }
+    if not set(lines) <= set(recordings):
+        return {}
+    from dexrepro.report import style
+
+    figure, ((a, b), (c, d)) = style.subplots(2, 2, height=4.6)
+    plane.draw_map(a, config.cases["constrained"], reference=False)
+    for case, line in lines.items():
+        a.plot(*recordings[case].frames["path"].to_numpy().T, label=case, **style.LINES[line])
+    a.set(xlim=(4, 18.5), ylim=(9, 16), ylabel="y [cm]")
+    phi = np.linspace(0, np.pi / 2, 300)
+    b.plot(np.degrees(phi), config.strength * phi * np.exp(-config.decay * phi), **style.LINES["book"])
+    b.set(xlabel="Angle between heading and obstacle [deg]", ylabel="$\\|p\\|/\\|v\\|$ [1/s]")
+    for case in ("centroid", "potential"):
+        frame = recordings[case].frames["points"]
+        name = "steering" if case == "centroid" else "potential"
+        c.plot(np.maximum(frame.offset, 1e-8), frame.distance, marker=".", label=name, **style.LINES[lines[case]])
+    c.set(xscale="log", xlabel="Offset of the point [cm] (left: 0)", ylabel="Smallest distance [cm]", ylim=(0, None))
+    c.legend()
+    for case in ("centroid", "closest", "boundary", "potential"):
+        bars = recordings[case].frames["bars"]
+        passed = (bars.clearance > 0).groupby(bars.half_width).sum()
+        d.plot(passed.index, passed, marker=".", **style.LINES[lines[case]])
+    d.set(xlabel="Half-width of the bar [cm]", ylabel="Bars passed, of 5 [-]", ylim=(-0.2, 5.3))
+    figure.legend(*a.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=6.5)
+    for letter, axes, text in zip(
+        "abcd", (a, b, c, d), ("past the triangle", "steering term", "point obstacle", "bars")
+    ):
+        style.panel(axes, letter, text)
+    style.title(figure, "Steering fails for exact alignment and wide obstacles; the potential is a strong rival")
+    return {"6.D": figure}

@@ -1,0 +1,41 @@
+"""What the book says about ``impedance_stability``, as predicates over its metrics."""
+
+from __future__ import annotations
+
+from dexrepro.experiment import Claim, every, greater, less, within
+
+STABILITY = "impedance_stability"
+
+CLAIMS = (
+    Claim(
+        "C7.28",
+        "7.B",
+        "An unsuitable k_s makes the system unstable.",
+        every(
+            greater(f"{STABILITY}.gain10.stable", 0.5),
+            less(f"{STABILITY}.gain45.stable", 0.5),
+            within(f"{STABILITY}.limit_ratio", 0.85, 1.15),
+        ),
+        printed=greater(f"{STABILITY}.displaced_printed.stable", 0.5),
+        where="7.3.3",
+        note="Too large for the sampling period: the limit is where the sampled loop predicts it. As "
+        "printed the law is unstable with a suitable k_s as well (E7.18).",
+    ),
+    Claim(
+        "C7.29b",
+        "7.B",
+        "(7.40) ensures stability where k_s is too large.",
+        greater(f"{STABILITY}.robust_too_large.stable", 0.5),
+        source="ours",
+        note="A maximum can only raise the gain; the text does not say on which side k_s is unsuitable.",
+    ),
+    Claim(
+        "C7.30",
+        "7.B",
+        "V decreases.",
+        every(less(f"{STABILITY}.displaced.lyapunov_rise", 0), less(f"{STABILITY}.displaced.lyapunov_time", 100)),
+        printed=less(f"{STABILITY}.displaced_printed.lyapunov_rise", 0),
+        where="(7.44)",
+        note="At every step down to a ten-thousandth; below that it is a noise floor.",
+    ),
+)

@@ -1,0 +1,87 @@
+"""What ``obstacle_contact`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.experiment import Config, Figure, Recording
+
+FIGURES = {
+    "7.D": Figure(
+        "The arm passes forward over a stack that is taller than planned, so that its end touches the soft top, and "
+        "is pushed sideways with 0.5 N before the obstacle, behind it and at rest (simulated; not in the book). (a) "
+        "Contact force. (b) Sideways deviation caused by the push before the obstacle. (c) Deviation under the three "
+        "pushes without estimation; dots: with it, all below 0.03 mm.",
+        "With time-delay estimation neither contact force nor deviation depends on the impedance; without it they do.",
+    ),
+}
+TABLES = {"T7.D": "Contact and pushes under constant and variable impedance"}
+
+
+NAMES = {"muscle": "muscle", "low": "constant, smallest", "mean": "constant, mean", "high": "constant, largest"}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+    if not {"muscle", "low", "muscle_plain", "low_plain"} <= set(recordings):
+        return {}
+    from dexrepro.report import style
+
+    figure, (contact, push, bars) = style.subplots(1, 3, height=2.7)
+    lines = {"muscle": (style.BOOK, "-", "muscle"), "low": (style.EXTRA[0], ":", NAMES["low"]),
+             "muscle_plain": (style.BOOK, "--", "muscle, no estimation"),
+             "low_plain": (style.EXTRA[0], "--", f"{NAMES['low']}, no estimation")}  # fmt: skip
+    start, end = config.pushes.before
+    for case, (colour, line, label) in lines.items():
+        recording = recordings[case]
+        look: Any = {"color": colour, "linestyle": line, "linewidth": 2.6 if case == "muscle" else 1.2}
+        contact.plot(recording.time, recording["contact"], label=label, **look)
+        window = recording.between(start - 0.1, end + 0.3)
+        free = 1e3 * (recording["arm.tip"] - recording["planned"])[:, 1]
+        push.plot(recording.time[window], free[window] - free[window][0], **look)
+    contact.set(xlabel="Time [s]", ylabel="Contact force [N]", xlim=(2.8, 4.2), ylim=(0, None))
+    contact.legend(fontsize=6.5, loc="upper left", borderpad=0.0)
+    contact.set_ylim(top=1.8 * contact.get_ylim()[1])
+    push.axvspan(start, end, color="#EAF2F8", linewidth=0)
+    push.set(xlabel="Time [s]", ylabel="Sideways deviation [mm]")
+    width = 0.2
+    colours = (style.BOOK, style.EXTRA[0], style.PLAIN, style.RIVAL)
+    for k, (name, colour) in enumerate(zip(NAMES, colours)):
+        places = np.arange(3) + width * (k - 1.5)
+        values, estimated = (
+            [metrics[case][f"{when}_push"] for when in config.pushes] for case in (f"{name}_plain", name)
+        )
+        bars.bar(places, values, width, color=colour, label=NAMES[name])
+        bars.plot(places, estimated, ".", color="k", markersize=3)
+    bars.set(xticks=range(3), xticklabels=["before", "behind", "at rest"], ylabel="Deviation [mm]")
+    bars.set_ylim(top=2.2 * bars.get_ylim()[1])
+    bars.plot([], [], ".", color="k", markersize=3, label="with estimation")
+    bars.legend(fontsize=6.5, loc="upper right", handlelength=1.0, borderpad=0.0)
+    for letter, panel, text in zip("abc", (contact, push, bars), ("contact with the stack", "push of 0.5 N", "pushes")):
+        style.panel(panel, letter, text)
+    style.title(figure, "Estimation hides the impedance: without it, muscle-like impedance is soft far and stiff near")
+    return {"7.D": figure}
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
+) -> dict[str, pd.DataFrame]:
+    rows = [
+        {
+            "impedance": NAMES.get(case.removesuffix("_plain"), case),
+            "estimation": not case.endswith("_plain"),
+            "peak contact force [N]": values["contact_peak"],
+            "contact impulse [N s]": values["contact_impulse"],
+            "push before [mm]": values["before_push"],
+            "push behind [mm]": values["behind_push"],
+            "push at rest [mm]": values["rest_push"],
+            "static deviation [mm]": values["static_deviation"],
+            "RMS error of the run [mm]": values["rms_error"],
+        }
+        for case, values in metrics.items()
+        if case in config.cases
+    ]
+    return {"T7.D": pd.DataFrame(rows)}

@@ -1,0 +1,163 @@
+"""What ``reaching_demonstrations`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter7 import skills
+from dexrepro.experiment import Config, Figure, Recording
+
+from .experiment import paths_of, traces_of
+
+FIGURES = {
+    "7.4": Figure(
+        "The simulated platform: desktop arm with finger handle, board of 21 x 13 cm, four cubes of 2 cm as obstacle, "
+        "start and goal (blue). The book shows a photograph of a joystick.",
+        "A small arm over a board with a stack of cubes.",
+    ),
+    "7.5": Figure(
+        "A simulated demonstration with the tall obstacle at the far place: the arm is led over it.",
+        "Four pictures of the arm passing over the stack.",
+    ),
+    "7.6": Figure(
+        "Simulated demonstrations on the board. (a) Plan view and height of ordinary reaches (grey) and of the "
+        "movement primitive learned from them (blue); red: learned with the printed sign of D v. (b) Muscle "
+        "stiffness likewise. (c-f) Reactions to a low (2 cm) and a tall (8 cm) obstacle, far and close, in three "
+        "directions; d': distance of forward and right at the obstacle in standard deviations. The book's figure "
+        "shows recordings of one person with a joystick.",
+        "Ordinary reaches are reproduced to a fraction of a millimetre; forward and right reactions separate for a low "
+        "obstacle and overlap for a tall one.",
+    ),
+    "7.7": Figure(
+        "Simulated muscle stiffness from EMG for the four obstacles, five repetitions in each of three directions, "
+        "with the mean ordinary stiffness as reference. The dependence on height and distance is built in.",
+        "Stiffness ends higher for the tall obstacle and rises earlier for the close one.",
+    ),
+}
+TABLES = {"T7.1": "Factors and experimental conditions, completed, with what the demonstrations do"}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+    if "corrected" not in recordings:
+        return {}
+    config = config.cases.corrected
+    figures = {"7.6": draw_paths(recordings, metrics, config), "7.7": draw_stiffness(recordings["corrected"], config)}
+    if recordings["corrected"].images:
+        figures |= draw_pictures(recordings["corrected"].images)
+    return figures
+
+
+def draw_pictures(images: Mapping[str, Any]) -> dict[str, Any]:
+    from dexrepro.report import style
+
+    shown = style.trimmed({name: image for name, image in images.items() if name != "platform"})
+    platform, axes = style.subplots(width=style.ONE_COLUMN, height=2.5)
+    axes.imshow(style.trimmed({"platform": images["platform"]})["platform"])
+    axes.axis("off")
+    style.title(platform, "Arm, board and obstacle (simulated)")
+    figure, panels = style.subplots(1, 4, height=1.7)
+    words = ("start", "move away", "cross over", "reach the target")
+    for letter, word, panel in zip("abcd", words, panels):
+        panel.imshow(shown[letter])
+        panel.axis("off")
+        style.panel(panel, letter, word)
+    style.title(figure, "The person leads the arm over the tall obstacle (simulated)")
+    return {"7.4": platform, "7.5": figure}
+
+
+def draw_paths(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> Any:
+    from dexrepro.chapters.chapter7 import pictures
+    from dexrepro.report import style
+
+    recording, task = recordings["corrected"], skills.reach(config)
+    figure, plans, sides = pictures.plans_over_sides(3, height=5.6)
+    level = pictures.joined(figure, plans, sides, 0, 1)
+    level.plot(recording.time, recording["stiffness"], color="#AAAAAA", linewidth=0.6, linestyle="--")
+    level.set(xlabel="Time [s]", ylabel="Stiffness $X^{stf}$ [-]", ylim=(0.02, 0.045))
+    style.panel(level, "b", "ordinary stiffness")
+    ordinary = paths_of(recording, "ordinary", config)[0]
+    pictures.plan(plans[0, 0], ordinary, color="#AAAAAA", linewidth=0.6, linestyle="--")
+    pictures.side(sides[0, 0], ordinary, task, color="#AAAAAA", linewidth=0.6, linestyle="--")
+    for case, kind in (("corrected", "book"), ("printed_sign", "printed")):
+        if case in recordings:
+            pictures.plan(plans[0, 0], recordings[case]["learned"], **style.LINES[kind])
+            pictures.side(sides[0, 0], recordings[case]["learned"], task, **style.LINES[kind])
+            level.plot(recording.time, recordings[case]["learned_stiffness"], **style.LINES[kind])
+    sides[0, 0].set_ylim(0, 2)
+    style.panel(plans[0, 0], "a", f"ordinary, {10 * metrics['corrected']['ordinary_rmse']:.1f} mm off")
+    places = {("far", "low"): (0, 2), ("far", "tall"): (1, 0), ("close", "low"): (1, 1), ("close", "tall"): (1, 2)}
+    for condition, paths in zip(skills.conditions(config), paths_of(recording, "reactions", config)):
+        place, line = places[condition.labels[:2]], pictures.DIRECTIONS[condition.labels[2]] | {"linewidth": 0.7}
+        pictures.plan(plans[place], paths, **line)
+        pictures.side(sides[place], paths, task, **line)
+        if condition.labels[2] == "left":
+            pictures.footprint(plans[place], condition.obstacle)
+            pictures.profile(sides[place], condition.obstacle, task)
+            sides[place].set_ylim(0, 13)
+    for letter, ((distance, height), place) in zip("cdef", places.items()):
+        separation = metrics["corrected"][f"separation_{distance}_{height}"]
+        style.panel(plans[place], letter, f"{height}, {distance}: d' = {separation:.1f}")
+    for place in ((0, 0), *places.values()):
+        pictures.ends(plans[place], task)
+    looks = {"demonstrated, ordinary": {"color": "#AAAAAA", "linewidth": 0.6, "linestyle": "--"}}
+    looks |= {"learned": style.LINES["book"], "printed sign": style.LINES["printed"], **pictures.DIRECTIONS}
+    style.legend_below(figure, looks)
+    style.title(figure, "Forward and right are distinct for a low obstacle and overlap for a tall one (simulated)")
+    return figure
+
+
+def draw_stiffness(recording: Recording, config: Config) -> Any:
+    from dexrepro.chapters.chapter7 import pictures
+    from dexrepro.report import style
+
+    figure, axes = style.subplots(2, 2, height=3.3, sharex=True, sharey=True)
+    traces = traces_of(recording, config)
+    bundles = [("far", "low"), ("far", "tall"), ("close", "low"), ("close", "tall")]
+    for letter, key, panel in zip("abcd", bundles, axes.flat):
+        for condition, group in zip(skills.conditions(config), traces):
+            if condition.labels[:2] == key:
+                line = pictures.DIRECTIONS[condition.labels[2]] | {"linewidth": 0.6}
+                panel.plot(recording.time, group.T, **line)
+        panel.plot(recording.time, recording["stiffness"].mean(axis=1), **style.LINES["reference"])
+        moment = skills.reach(config).moment(config.scene[key[0]])
+        style.event(panel, moment * config.demonstration.duration, "at obstacle")
+        style.panel(panel, letter, f"{key[1]} obstacle, {key[0]}")
+    axes[0, 0].plot([], [], label="no obstacle", **style.LINES["reference"])
+    pictures.name_directions(axes[0, 0])
+    axes[0, 0].set_ylim(0.02, 0.15)
+    for panel in axes[1]:
+        panel.set_xlabel("Time [s]")
+    for panel in axes[:, 0]:
+        panel.set_ylabel("Stiffness $X^{stf}$ [-]")
+    style.title(figure, "Stiffness ends higher for a tall obstacle and rises earlier for a close one (built in)")
+    return figure
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
+) -> dict[str, pd.DataFrame]:
+    if "corrected" not in recordings:
+        return {}
+    recording, config = recordings["corrected"], config.cases.corrected
+    task = skills.reach(config)
+    ordinary = paths_of(recording, "ordinary", config)[0].mean(axis=0)
+    rows = []
+    for condition, paths in zip(skills.conditions(config), paths_of(recording, "reactions", config)):
+        offset = (paths - ordinary) @ task.axes[1]
+        widest = np.abs(offset).argmax(axis=1)
+        distance, height, direction = condition.labels
+        rows.append(
+            {
+                "distance to obstacle": f"{'long' if distance == 'far' else 'short'} ({condition.distance:.1f} cm)",
+                "height of obstacle": f"{height} ({condition.obstacle.height:g} cm)",
+                "direction": direction,
+                "mean clearance [cm]": condition.obstacle.clearance(paths, config.scene.tool_radius).mean(),
+                "mean lift [cm]": paths[..., 2].max(axis=1).mean(),
+                "lateral excursion [cm, left +]": offset[np.arange(len(paths)), widest].mean(),
+            }
+        )
+    return {"T7.1": pd.DataFrame(rows)}

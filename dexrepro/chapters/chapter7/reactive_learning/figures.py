@@ -1,0 +1,89 @@
+"""What ``reactive_learning`` shows: its figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from dexrepro.chapters.chapter7 import skills
+from dexrepro.experiment import Config, Figure, Recording
+
+from .experiment import shown
+
+FIGURES = {
+    "7.8": Figure(
+        "Reactions to the low, close obstacle learned with 1, 2 and 5 groups of three enhancement nodes, seen from "
+        "above; black dashed: ordinary skill; thin: demonstrations (simulated). Below: error against the mean "
+        "demonstration while groups are added, median and range of ten draws of the random nodes; the old nodes keep "
+        "their weights (blue, as in (7.17)) or are fitted again (orange, the other reading of (7.19)).",
+        "With one, two and five groups the learned reactions approach the demonstrated ones.",
+    ),
+}
+TABLES = {"T7.2": "Learning the reactions to the low, close obstacle"}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+    if "frozen" not in recordings:
+        return {}
+    from dexrepro.chapters.chapter7 import pictures
+    from dexrepro.report import style
+
+    recording, case = recordings["frozen"], config.cases.frozen
+    task, condition = skills.reach(case), skills.conditions(case)[shown(case)[0]]
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.6))
+    grid = figure.add_gridspec(2, 6, height_ratios=[1, 1.15])
+    names = list(pictures.DIRECTIONS)
+    groups = [g for g in case.shown_groups if f"groups{g}" in recording]
+    panels = [figure.add_subplot(grid[0, 2 * k : 2 * k + 2]) for k in range(len(groups))]
+    panels.append(figure.add_subplot(grid[1, :3]))
+    for letter, number, panel in zip("abcd", [*groups, groups[-1]], panels):
+        demonstrations = skills.by_path(recording["demonstrations"])
+        for k, path in enumerate(demonstrations):
+            line = pictures.DIRECTIONS[names[k * 3 // len(demonstrations)]]
+            pictures.plan(panel, path, color=line["color"], linewidth=0.4, alpha=0.5)
+        for name, path in zip(names, skills.by_path(recording[f"groups{number}"])):
+            pictures.plan(panel, path, **pictures.DIRECTIONS[name])
+        pictures.plan(panel, recording["ordinary"], **style.LINES["reference"])
+        pictures.footprint(panel, condition.obstacle)
+        pictures.ends(panel, task)
+        pictures.board(panel)
+        error = 10 * metrics["frozen"][f"rmse{number}"]
+        plural = "s" if number > 1 else ""
+        style.panel(
+            panel,
+            letter,
+            f"{number} group{plural}, {error:.2g} mm off" if letter != "d" else "final, and demonstrations",
+        )
+    pictures.name_directions(panels[3])
+    curve = figure.add_subplot(grid[1, 3:])
+    for name, kind in (("frozen", "book"), ("refit", "rival")):
+        if name in recordings:
+            learning = recordings[name].frames["learning"].groupby("groups").rmse
+            label = {"frozen": "old weights kept (7.17)", "refit": "all weights free"}[name]
+            curve.plot(learning.median().index, 10 * learning.median(), label=label, marker=".", **style.LINES[kind])
+            style.band(curve, learning.median().index, 10 * learning.min(), 10 * learning.max())
+    curve.axhline(10 * metrics["frozen"]["spread"], **style.LINES["reference"])
+    curve.annotate("spread of repetitions", (4.5, 10 * metrics["frozen"]["spread"]), fontsize=6.5, va="bottom")
+    curve.axhline(10 * metrics["frozen"]["plain_refit"], label="plain primitive fitted again", **style.LINES["plain"])
+    curve.set(yscale="log", xlabel="Groups of enhancement nodes [-]", ylabel="RMS error [mm]")
+    curve.legend()
+    style.panel(curve, "e", "error of ten draws of the nodes")
+    style.title(figure, "Reactions approach the demonstrations group by group, if the old weights are kept")
+    return {"7.8": figure}
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
+) -> dict[str, pd.DataFrame]:
+    rows = []
+    for case, values in metrics.items():
+        groups = [g for g in (1, 2, 5, 8) if f"rmse{g}" in values]
+        rows.append(
+            {"case": case}
+            | {f"RMS error, {g} group(s) [mm]": 10 * values[f"rmse{g}"] for g in groups}
+            | {f"end error, {g} group(s) [mm]": 10 * values[f"end_error{g}"] for g in groups}
+            | {"draws whose forcing error always falls [%]": 100 * values["falling_draws"]}
+        )
+    return {"T7.2": pd.DataFrame(rows)}

@@ -1,0 +1,54 @@
+"""What the book says about ``unseen_conditions``, as predicates over its metrics."""
+
+from __future__ import annotations
+
+from dexrepro.experiment import Claim, every, less
+
+UNSEEN = "unseen_conditions"
+
+CLAIMS = (
+    Claim(
+        "C7.23",
+        "7.C",
+        "Leaving one condition out, fuzzy rules are closer than the nearest demonstration, on average.",
+        less(f"{UNSEEN}.main.left_out_fuzzy", f"{UNSEEN}.main.left_out_nearest"),
+        source="ours",
+        note="On the mean only: they win six of twelve conditions.",
+    ),
+    Claim(
+        "C7.24",
+        "7.C",
+        "In unseen conditions fuzzy rules are closer than the nearest demonstration and touch less.",
+        every(
+            less(f"{UNSEEN}.main.unseen_fuzzy", f"{UNSEEN}.main.unseen_nearest"),
+            less(f"{UNSEEN}.main.touches_fuzzy", f"{UNSEEN}.main.touches_nearest"),
+        ),
+        source="ours",
+    ),
+    Claim(
+        "C7.24b",
+        "7.C",
+        "In unseen conditions fuzzy rules are closer than a plane a direction.",
+        less(f"{UNSEEN}.main.unseen_fuzzy", f"{UNSEEN}.main.unseen_plane"),
+        source="ours",
+        note="The synthetic person reacts linearly to the height, which favours the plane; it touches the obstacle "
+        "more often and is worse when a condition is left out.",
+    ),
+    Claim(
+        "C7.25",
+        "7.C",
+        "The fuzzy system can represent the reactions of its own rules (to 1 mm, for some width).",
+        less(f"{UNSEEN}.narrow.rule_worst", 0.1),
+        where="Remark 7.3",
+        by_construction="with sets narrow enough one rule alone speaks at its centre",
+        note="At the rules' own conditions only; what it does between them, C7.24 and C7.24b tell.",
+    ),
+    Claim(
+        "C7.25b",
+        "7.C",
+        "It does so with the widths used here.",
+        less(f"{UNSEEN}.main.rule_worst", 0.1),
+        source="ours",
+        note="Our widths interpolate best and leak between forward and right; no width is printed.",
+    ),
+)

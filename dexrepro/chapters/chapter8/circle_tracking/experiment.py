@@ -1,0 +1,127 @@
+"""A two-link arm without a known model tracks a circle inside hard error bounds, with and without joint friction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter8.task import TaskController, beyond, circle, two_link
+from dexrepro.control.barrier_tracking import BarrierTracking, barrier_energy
+from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.networks import AdaptiveNetwork, GrowingGaussians
+from dexrepro.physics.elements import JointLoad, joint_friction
+from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.world import World
+from dexrepro.robots.two_link import TwoLink
+
+RATE = 100.0
+
+
+def scene(config: Config) -> World:
+    """The arm in a vertical plane (gravity along -y), its end point at the start."""
+    world = World(step=config.step, gravity=(0.0, -config.gravity, 0.0), perturbation=config.perturbation)
+    start = TwoLink(config.arm.lengths).inverse(config.start, config.arm.elbow)
+    world.add_arm("arm", two_link(config.arm), start)
+    friction = config.friction
+    if friction.coulomb or friction.viscous:
+        world.add(JointLoad("arm", joint_friction(friction.viscous, friction.coulomb, friction.width)))
+    return world
+
+
+def simulate(config: Config, rng: Callable[[str], np.random.Generator]) -> Recording:
+    gravity = (0.0, -config.gravity, 0.0)
+    arm = two_link(config.arm)
+    factor = match_rates(config) if config.match else 1.0
+    law: Any = config.barrier(networks=config.networks)
+    if config.controller == "hinfinity":
+        law = config.hinfinity(RigidBodyModel(arm, gravity, mass_error=config.model_error))
+    controller = TaskController(law, circle(config.path), RigidBodyModel(arm, gravity))
+    probes: dict[str, Callable[[], Any]] = {
+        "reference": lambda: controller.reference.position,
+        "error": lambda: controller.error,
+    }
+    if isinstance(law, BarrierTracking):
+        probes["nodes"] = lambda: law.nodes
+        probes["network_force"] = lambda: law.network_force
+        probes["feature_power"] = lambda: law.feature_power
+    with scene(config) as world:
+        recording = world.run(
+            config.duration,
+            controllers={"arm": controller},
+            probes=probes,
+            stop=beyond(controller, config.bound) if isinstance(law, BarrierTracking) else None,
+            record_every=config.record_every,
+        )
+    if isinstance(law, BarrierTracking):
+        recording.frames["rate"] = pd.DataFrame({"gravity": [float(law.networks[2].gain)], "factor": [factor]})
+        if isinstance(law.networks[2].basis, GrowingGaussians):
+            recording.frames["nodes"] = pd.DataFrame(law.networks[2].basis.centres.copy(), columns=["x", "y"])
+    return recording
+
+
+def match_rates(config: Config) -> float:
+    """Scale the rates so that rate x mean |features of G|^2 is the broad network's on the steady path; the factor."""
+    own = config.networks[2].basis
+    broad = GrowingGaussians(2, width=own.width, threshold=config.match)
+    motion = circle(config.path)
+    path = [np.array(config.start)] + [
+        motion(time).position for time in np.arange(0.0, 2.0 * np.pi / config.path.rate, 0.05)
+    ]
+    steady = round(config.settled / 0.05)
+    wanted, has = (np.mean([np.sum(basis(x, grow=True) ** 2) for x in path][steady:]) for basis in (broad, own))
+    factor = float(wanted / has)
+    networks: tuple[AdaptiveNetwork, ...] = config.networks
+    for network in networks:
+        network.gain = network.gain * factor
+    return factor
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    bound = np.array(config.bound)
+    error = recording["error"]
+    largest = np.abs(error).max(axis=0)
+    steady, early = (error[recording.between(config.settled, end)] for end in (config.duration, config.early))
+    energy = barrier_energy(np.clip(error, -0.999 * bound, 0.999 * bound), bound).sum(axis=1)
+    metrics: Metrics = {
+        "max_x": 1e3 * largest[0],
+        "max_y": 1e3 * largest[1],
+        "bound_used": float(np.max(largest / bound)),
+        "violated_at": None if recording.status == "finished" else float(recording.time[-1]),
+        "energy_ratio": float(energy[recording.time > 1.0].max() / energy[0]) if recording.time[-1] > 1.0 else None,
+    }
+    for name, part in (("rms", steady), ("early", early)):
+        for axis, letter in enumerate("xy"):
+            metrics[f"{name}_{letter}"] = 1e3 * float(np.sqrt(np.mean(part[:, axis] ** 2))) if len(part) else None
+    if "nodes" in recording:
+        counts = recording["nodes"][-1].astype(int)
+        features = getattr(config.networks[2].basis, "features_per_node", 1)
+        force = recording["network_force"][recording.between(config.settled)]
+        power = recording["feature_power"][recording.between(config.settled)]
+        metrics |= {f"nodes_{name}": int(count) for name, count in zip(("d", "c", "g"), counts)}
+        metrics |= {
+            "nodes": int(counts.sum()),
+            "features": int(counts.sum()) * features,
+            "network_force": float(np.sqrt(np.mean(np.sum(force**2, axis=1)))) if len(force) else None,
+            "feature_power": float(power.mean()) if len(power) else None,
+            "gain": float(power.mean() * recording.frames["rate"]["gravity"][0]) if len(power) else None,
+        }
+    return metrics
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """Error of the fixed network over that of the grown one, on each axis, where both cases were run."""
+    pairs = {
+        "unit": ("broad_unit", "fuzzy_unit"),
+        "tuned": ("broad", "fuzzy"),
+        "friction": ("friction_broad", "friction_fuzzy"),
+    }
+    result: Metrics = {}
+    for name, (broad, fuzzy) in pairs.items():
+        if broad in metrics and fuzzy in metrics:
+            for key in ("rms_x", "rms_y"):
+                mine, other = metrics[broad][key], metrics[fuzzy][key]
+                result[f"ratio_{name}_{key[-1]}"] = other / mine if mine and other else None
+    return result

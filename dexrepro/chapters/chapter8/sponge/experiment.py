@@ -1,0 +1,193 @@
+"""A simulated Baxter arm presses a sponge and learns the optimal interaction with it; no model of arm or sponge."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from dexrepro.chapters.chapter8 import learning_study
+from dexrepro.chapters.chapter8.task import TaskController, beyond
+from dexrepro.control.impedance_learning import LearnedGain
+from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
+from dexrepro.control.task_space import Motion
+from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.networks import GrowingGaussians
+from dexrepro.physics.elements import TipForce
+from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import Sense
+from dexrepro.physics.rendering import Camera
+from dexrepro.physics.world import World
+from dexrepro.robots.baxter import baxter
+
+Array = NDArray[np.float64]
+RATE = 50.0
+VIEW = Camera(target=(0.45, -0.3, 0.27), distance=1.2, yaw=25.0, pitch=-15.0)
+
+
+def scene(config: Config) -> World:
+    """The right arm above a sponge, a spring and damper below its surface that never pulls; the box only shows it."""
+    world = World(step=config.step, perturbation=config.perturbation)
+    world.add_arm("arm", baxter("right"), config.start)
+    surface, stiffness, damping = config.sponge.surface, config.sponge.stiffness, config.sponge.damping
+    x, y = config.path.place
+    world.add_box("sponge", (0.2, 0.2, surface), (x, y, surface / 2), colour=(0.95, 0.85, 0.3, 1.0), collides=False)
+
+    def push(time: float, position: Any, velocity: Any) -> tuple[float, float, float]:
+        depth = surface - position[2]
+        return 0.0, 0.0, max(0.0, stiffness * depth - damping * velocity[2]) if depth > 0 else 0.0
+
+    world.add(TipForce("sponge_force", on="arm", law=push))
+    return world
+
+
+def approach(settings: Any) -> Callable[[float], Motion]:
+    """The desired path of Eq. (8.48) over time [s]: straight down towards a height, exponentially."""
+    x, y = settings.place
+    depth, end = settings.descent, settings.end
+
+    def motion(time: float) -> Motion:
+        part = depth * math.exp(-time)
+        return Motion(np.array((x, y, end + part)), np.array((0.0, 0.0, -part)), np.array((0.0, 0.0, part)))
+
+    return motion
+
+
+class RedundantController(TaskController):
+    """The task force on an arm with more joints than the task has axes, with the arm's own gravity compensation.
+
+    The remaining joints are held near their start by accelerations stiffness (q_0 - q) - 2 sqrt(stiffness) dq [1/s^2],
+    projected so that they do not move the task. Gravity and the inertia of this projection are the arm's own, exact;
+    the law that gives the task force knows neither. limits: largest torques [N m].
+    """
+
+    def __init__(
+        self, *arguments: Any, start: Array, stiffness: float, compensate: bool, limits: Array, **more: Any
+    ) -> None:
+        super().__init__(*arguments, **more)
+        self.start, self.stiffness, self.damping = start, stiffness, 2.0 * math.sqrt(stiffness)
+        self.compensate, self.limits = compensate, limits
+
+    def __call__(self, sense: Sense) -> Array:
+        q, dq = sense.position, sense.velocity
+        jacobian, mass = self.jacobian(q), self.model.mass_matrix(q)
+        wanted = self.stiffness * (self.start - q) - self.damping * dq
+        coupling = jacobian @ np.linalg.solve(mass, jacobian.T)
+        force = self.force(sense) - np.linalg.solve(coupling, jacobian @ wanted)
+        torque = jacobian.T @ force + mass @ wanted
+        if self.compensate:
+            torque += self.model.gravity(q)
+        return np.minimum(np.maximum(torque, -self.limits), self.limits)
+
+
+def simulate(config: Config, rng: Callable[[str], np.random.Generator]) -> Recording:
+    interaction = config.interaction
+    controller = RedundantController(
+        config.law, approach(config.path), RigidBodyModel(baxter("right")), interaction, axis=2,
+        start=np.array(config.start), stiffness=config.posture_stiffness, compensate=config.gravity_compensation,
+        limits=np.array(config.torque_limits),
+    )  # fmt: skip
+    with scene(config) as world:
+        recording = world.run(
+            config.duration,
+            controllers={"arm": controller},
+            control_period=config.control_period,
+            probes={
+                "reference": lambda: controller.reference.position,
+                "path": lambda: controller.path.position,
+                "error": lambda: controller.error,
+                "nodes": lambda: config.law.nodes,
+                "gain": lambda: interaction.gain.gain,
+                "phase": lambda: float(interaction.gain.phase),
+            },
+            stop=beyond(controller, config.bound),
+            record_every=config.record_every,
+            on_divergence="stop",
+        )
+        if config.pictures:
+            staged = stage(world, recording, config)
+            recording.images = {f"at_{t:g}s": world.snapshot(staged, t, VIEW, (480, 400)) for t in config.pictures}
+    gain = interaction.gain
+    if isinstance(gain, LearnedGain) and gain.learned is not None:
+        model = InteractionModel(config.sponge.stiffness, config.sponge.damping, config.exosystem)
+        recording.frames["iterates"] = learning_study.iterates(gain, model)
+        if config.noise.draws:
+            recording.frames["noise"] = learning_study.noise_study(
+                gain, config.noise.draws, config.noise.force, config.noise.position, rng("noise")
+            )
+    return recording
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    """The box is shown as low as it is pressed."""
+    surface = config.sponge.surface
+    depth = np.maximum(0.0, surface - recording["arm.tip"][:, 2])
+    place = np.broadcast_to([*config.path.place, surface / 2], (len(depth), 3))
+    return Recording({**recording.series, "sponge.pose": place - depth[:, None] * [0.0, 0.0, 1.0]})
+
+
+def measure(recording: Recording, config: Config) -> Metrics:
+    force = recording["sponge_force.z"]
+    contact = force > 0
+    depth = 1e3 * np.maximum(config.sponge.surface - recording["arm.tip"][:, 2], 0.0)
+    error = 1e3 * np.abs(recording["error"]).max(axis=0)
+    finished = recording.status == "finished"
+    used = float(np.max(error / (1e3 * np.array(config.bound))))
+    last = recording.between(config.duration - 0.5)
+    counts = recording["nodes"].astype(int)
+    settled = counts[recording.between(config.duration - 5.0)]
+    metrics: Metrics = {f"max_error_{axis}": float(value) for axis, value in zip("xyz", error)}
+    metrics |= {f"nodes_{name}": int(count) for name, count in zip("dcg", counts[-1])}
+    metrics |= {
+        "bound_used": used if finished else max(used, 1.0),  # it may pass the bound between two samples
+        "stopped_at": None if finished else float(recording.time[-1]),
+        "touched_at": float(recording.time[contact.argmax()]) if contact.any() else None,
+        "peak_compression": float(depth.max()),
+        "peak_force": float(force.max()),
+        "peak_torque": float(np.abs(recording["arm.torque"]).max()),
+        "final_compression": float(depth[last].mean()) if finished else None,
+        "final_force": float(force[last].mean()) if finished else None,
+        "late_growth": int(np.sum(settled[-1] - settled[0])) if finished else None,
+        "gain_x": float(recording["gain"][-1, 0]),
+        "gain_s": float(recording["gain"][-1, 1]),
+    }
+    if "iterates" in recording.frames:
+        end = recording.frames["iterates"].iloc[-1]
+        errors = [abs(end[f"next_{key}"] / end[f"optimal_{key}"] - 1.0) for key in "xs"]
+        metrics |= {"gain_error": max(errors), "digits": -math.log10(max(errors)), "rank": int(end["rank"])}
+        metrics |= {"iterations": len(recording.frames["iterates"])}
+    if config.count_joint_inputs:
+        metrics |= _joint_counts(recording, config)
+    return metrics
+
+
+def _joint_counts(recording: Recording, config: Config) -> Metrics:
+    """How many nodes the same run would have made with joint angles and rates as inputs."""
+    position, velocity = recording["arm.position"], recording["arm.velocity"]
+    inputs = {"d": position, "c": np.hstack([position, velocity])}
+    result: Metrics = {}
+    for (name, path), network in zip(inputs.items(), config.law.networks):
+        basis = GrowingGaussians(path.shape[1], width=network.basis.width, threshold=network.basis.threshold)
+        for sample in path[::10]:
+            basis(sample, grow=True)
+        result[f"joint_nodes_{name}"] = basis.nodes
+    return result
+
+
+def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+    """Stiffness [N/m] below which the learned law compresses the sponge more than the wrong-model regulator."""
+    if "lqr" not in metrics:
+        return {}
+    cost = InteractionCost(config.cost.tracking, config.cost.effort, config.cost.output)
+    wrong = np.array([metrics["lqr"]["gain_x"], metrics["lqr"]["gain_s"]], float)
+
+    def difference(stiffness: float) -> float:
+        model = InteractionModel(stiffness, config.sponge.damping, config.exosystem)
+        learned = steady_fraction(closed_form_gain(model, cost), stiffness, cost.output)
+        return learned - steady_fraction(wrong, stiffness, cost.output)
+
+    return {"crossing_stiffness": float(brentq(difference, 50.0, 5000.0))}

@@ -1,0 +1,237 @@
+"""Figures and tables of the sponge experiment, from what is on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.chapters.chapter8 import learning_study
+from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
+from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING
+from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
+from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+
+from .experiment import VIEW
+
+FIGURES = {
+    "8.12": Figure(
+        "The simulated Baxter arm above and on the sponge at four instants, the box as low as it is pressed. The book "
+        "shows a photograph of the real arm.",
+        "A red arm with its gripper pointing down meets a yellow block.",
+    ),
+    "8.13": Figure(
+        "Desired, virtual and actual path of the gripper in the simulated sponge experiment, with the learned law, "
+        "the regulator with the wrong model and the bound no method can beat (true model, run for 10 s); error to the "
+        "virtual reference. The book shows the same four panels.",
+        "Along z both laws stay on their virtual reference; the learned one compresses the sponge less at the end.",
+    ),
+    "8.14": Figure(
+        "Gain of the learned law and of the regulator over time on the simulated sponge, with the optimum (dashed). "
+        "The book shows the same curves.",
+        "Both components move from the initial gain to the optimum in phase 3.",
+    ),
+    "8.C": Figure(
+        "Final compression of sponges of 100 to 1000 N/m under the optimal gain and under the regulator with the "
+        "wrong model, in closed form (lines) and simulated (marks). Not in the book.",
+        "The learned law compresses soft sponges more and firm ones less than the regulator.",
+    ),
+}
+TABLES = {
+    "T8.E": "Sponge: every method and variant",
+    "T8.F": "Algorithm 8.1: iterates of the policy iteration on the sponge",
+    "T8.G": "Noise study on the sponge",
+    "T8.Sc": "Sensitivity: the variants of the sponge experiment and what they do to the claims",
+}
+FILM = Film(
+    "learned", "The arm meets the sponge, explores it and moves to the optimal gain.", VIEW, "sponge_force.z",
+    "Contact force [N]",
+)  # fmt: skip
+
+
+LINES = {
+    "learned": ("proposed", "book"),
+    "lqr": ("LQR, wrong model", "rival"),
+    "lqr_true": ("LQR, true model", "extra1"),
+}
+
+
+def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+    figures: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
+        "8.12": (_draw_pictures, ("learned",)),
+        "8.13": (_draw_tracking, tuple(LINES)),
+        "8.14": (_draw_gain, ("learned", "lqr")),
+        "8.C": (_draw_stiffness, ("learned", "lqr")),
+    }
+    return {
+        identifier: function(recordings, metrics, config)
+        for identifier, (function, cases) in figures.items()
+        if all(case in recordings for case in cases)
+    }
+
+
+def _phases(axes: Any, run: Recording, names: bool = True) -> None:
+    from dexrepro.report import style
+
+    for number, (phase, colour) in enumerate(
+        ((EXPLORING, "#EAF2F8"), (SOLVING, "#F6EFE0"), (TRANSFERRING, "#E9F5EC")), 1
+    ):
+        inside = run.time[run["phase"] == phase]
+        if len(inside):
+            word = ("phase " if phase != SOLVING else "") + str(number) if names else ""
+            style.phase(axes, inside[0], inside[-1], word, colour)
+
+
+def _draw_pictures(recordings: Any, metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    images = style.trimmed(recordings["learned"].images)
+    names = sorted(images, key=lambda name: float(name.removeprefix("at_").removesuffix("s")))
+    figure, row = style.subplots(1, len(names), height=1.7)
+    for axes, name in zip(np.atleast_1d(row), names):
+        axes.imshow(images[name])
+        axes.set_axis_off()
+        axes.set_title(f"{name.removeprefix('at_').removesuffix('s')} s")
+    style.title(figure, "The simulated Baxter arm comes down on the sponge and yields")
+    return figure
+
+
+def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    figure, grid = style.subplots(2, 2, height=4.8)
+    learned = recordings["learned"]
+    for axis, (axes, letter) in enumerate(zip(grid.flat, "xyz")):
+        middle, scale = (config.path.place[axis], 1e3) if axis < 2 else (0.0, 1.0)
+        for case, (label, line) in LINES.items():
+            run = recordings[case]
+            axes.plot(run.time, scale * (run["arm.tip"][:, axis] - middle), label=label, **style.LINES[line])
+        for channel, label, line in (
+            ("reference", "virtual $x_0$, proposed", "extra2"),
+            ("path", "desired $x_d$", "reference"),
+        ):
+            axes.plot(learned.time, scale * (learned[channel][:, axis] - middle), label=label, **style.LINES[line])
+        unit = f"${letter}$ {-middle:+g} m [mm]" if axis < 2 else f"${letter}$ [m]"
+        axes.set(ylabel=unit, xlim=(0, config.duration))
+        style.panel(axes, "abc"[axis], ("Sideways", "Sideways", "Height")[axis])
+    for axes in grid[0]:
+        axes.set_ylim(-0.1, 0.1)
+    depth, error = grid[1]
+    surface = config.sponge.surface
+    depth.set(ylim=(0.04, 0.15), xlabel="Time [s]")
+    depth.axhline(surface, color="#7A5C1E", linewidth=0.6)
+    depth.annotate("sponge, relaxed", (17.8, surface + 0.001), fontsize=6.5, color="#7A5C1E", ha="right", va="bottom")
+    _phases(depth, learned)
+    for case, position in (("learned", 0.0835), ("lqr", 0.071)):
+        depth.annotate(
+            f"{metrics[case]['final_compression']:.1f} mm", (17.8, position), fontsize=7, ha="right",
+            color=style.LINES[LINES[case][1]]["color"],
+        )  # fmt: skip
+    for case in ("learned", "lqr"):
+        run = recordings[case]
+        error.plot(run.time, 1e3 * run["error"][:, 2], **style.LINES[LINES[case][1]])
+    error.set(ylabel="$z_{1z}$ [mm]", xlabel="Time [s]", xlim=(0, config.duration), ylim=(-8, 8))
+    error.text(0.98, 0.05, f"bound $\\pm${1e3 * config.bound[2]:g} mm, far outside", transform=error.transAxes,
+               fontsize=7, ha="right")  # fmt: skip
+    style.panel(error, "d", "Error to the virtual reference")
+    figure.legend(*depth.get_legend_handles_labels(), loc="outside lower center", ncols=5)
+    less = metrics["lqr"]["final_compression"] - metrics["learned"]["final_compression"]
+    style.title(figure, f"The learned law presses {less:.1f} mm less in the end, but more while it learns")
+    return figure
+
+
+def _draw_gain(recordings: Any, metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    learned, lqr = recordings["learned"], recordings["lqr"]
+    steps = learned.frames["iterates"]
+    figure, row = style.subplots(1, 2, height=2.4)
+    for index, (axes, key) in enumerate(zip(row, "xs")):
+        for run, (name, line) in ((learned, ("$K_m$, proposed", "book")), (lqr, ("$K_l$, LQR, wrong model", "rival"))):
+            axes.plot(run.time, run["gain"][:, index], label=name, **style.LINES[line])
+        axes.axhline(steps[f"optimal_{key}"].iloc[0], label="optimum of the true sponge", **style.LINES["reference"])
+        axes.set(xlabel="Time [s]", ylabel=f"$K_{key}$ [N/m]", xlim=(0, config.duration))
+        axes.set_ylim(*((-1050, 150), (0, 1200))[index])
+        _phases(axes, learned)
+    row[0].legend(loc="lower left", bbox_to_anchor=(0.0, 0.14), fontsize=6.5)
+    found, best = steps.iloc[-1].next_x, steps.iloc[-1].optimal_x
+    style.title(figure, f"The gain settles at {found:.1f} N/m, the optimum is {best:.1f} N/m".replace("-", "−"))
+    return figure
+
+
+def _draw_stiffness(recordings: Any, metrics: Any, config: Config) -> Any:
+    from dexrepro.report import style
+
+    cost = InteractionCost(config.cost.tracking, config.cost.effort, config.cost.output)
+    commanded = 1e3 * (config.sponge.surface - config.path.end)
+    stiffness = np.geomspace(100, 1000, 100)
+    gains = np.array(
+        [closed_form_gain(InteractionModel(k, config.sponge.damping, config.exosystem), cost) for k in stiffness]
+    )
+    wrong = np.array([metrics["lqr"]["gain_x"], metrics["lqr"]["gain_s"]])
+    learned = commanded * np.array([steady_fraction(g, k, cost.output) for g, k in zip(gains, stiffness)])
+    fixed = commanded * np.array([steady_fraction(wrong, k, cost.output) for k in stiffness])
+    figure, axes = style.subplots(1, 1, width=style.ONE_COLUMN, height=2.6)
+    axes.semilogx(stiffness, learned, label="learned law", **style.LINES["book"])
+    axes.semilogx(stiffness, fixed, label="LQR, wrong model", **style.LINES["rival"])
+    for prefix in ("", "soft_", "firm_"):
+        for kind, line, marker in (("learned", "book", "o"), ("lqr", "rival", "s")):
+            case = prefix + kind
+            if case in metrics and metrics[case]["final_compression"] is not None:
+                axes.plot(
+                    config.cases[case].sponge.stiffness, metrics[case]["final_compression"], marker=marker,
+                    color=style.LINES[line]["color"], markersize=5, linestyle="",
+                )  # fmt: skip
+    crossing = metrics["summary"]["crossing_stiffness"]
+    style.event(axes, crossing, f" {crossing:.0f} N/m")
+    axes.set(xlabel="Stiffness of the sponge [N/m]", ylabel="Final compression [mm]", ylim=(0, 50))
+    axes.set_xticks([100, 200, 500, 1000], ["100", "200", "500", "1000"])
+    axes.minorticks_off()
+    axes.legend(loc="lower left")
+    style.title(figure, f"Below {crossing:.0f} N/m the learned law presses more")
+    return figure
+
+
+_BASE = ("learned", "lqr")
+VARIANTS = (
+    Variant("C8.17", "sponge of 150 N/m", "final_compression", ("soft_learned", "soft_lqr"), _BASE),
+    Variant("C8.17", "sponge of 800 N/m", "final_compression", ("firm_learned", "firm_lqr"), _BASE),
+    Variant("C8.17", "peak in place of the end", "peak_compression", _BASE, ("learned_end", "lqr_end")),
+    Variant("C8.17", "printed model, force on the environment", "final_compression",
+            ("learned", "lqr_printed_environment"), _BASE),
+    Variant("C8.16", "printed model, force on the robot", "bound_used", ("lqr_printed", 1.0), ("lqr", 1.0)),
+    Variant("C8.16", "no gravity compensation", "bound_used", ("uncompensated", 1.0), ("learned", 1.0)),
+    Variant("C8.16", "control at 200 Hz", "bound_used", ("at_200_hz", 1.0), ("learned", 1.0)),
+    Variant("C8.16", "control at 50 Hz as printed", "bound_used", ("at_50_hz", 1.0), ("learned", 1.0)),
+)  # fmt: skip
+
+
+def tabulate(
+    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
+) -> dict[str, pd.DataFrame]:
+    columns = {"final_compression": "final compression [mm]", "final_force": "final force [N]",
+               "peak_compression": "peak compression [mm]", "peak_force": "peak force [N]",
+               "max_error_x": "largest z_1x [mm]", "max_error_y": "largest z_1y [mm]",
+               "max_error_z": "largest z_1z [mm]", "bound_used": "share of the bound used", "gain_x": "K_x [N/m]",
+               "gain_s": "K_s [N/m]", "gain_error": "error of the gain [-]", "iterations": "iterations",
+               "nodes_d": "nodes for D", "nodes_c": "nodes for C", "nodes_g": "nodes for G",
+               "peak_torque": "peak torque [N m]", "stopped_at": "stopped at [s]"}  # fmt: skip
+    rows = [
+        {"case": case, "stiffness [N/m]": config.cases[case].sponge.stiffness}
+        | {text: metrics[case].get(name) for name, text in columns.items()}
+        for case in recordings
+        if case in metrics
+    ]
+    ends = {
+        f"{case}_end": {"peak_compression": metrics[case].get("final_compression")} for case in _BASE if case in metrics
+    }
+    tables = {
+        "T8.E": pd.DataFrame(rows),
+        "T8.Sc": sensitivity_table(VARIANTS, {**metrics, **ends}, columns),
+    }
+    if "learned" in recordings:
+        tables["T8.F"] = learning_study.headed(recordings["learned"].frames["iterates"], "N/m")
+        tables["T8.G"] = learning_study.headed(recordings["learned"].frames["noise"], "N/m")
+    return tables

@@ -1,0 +1,3 @@
+from dexrepro.experiment import Erratum
+
+ERRATA = (Erratum("E90.01", "(90.1)", "slip", "a sign"),)

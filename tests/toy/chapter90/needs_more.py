@@ -1,4 +1,0 @@
-"""Needs a package nobody has."""
-
-REQUIRES = ("no_such_package",)
-FIGURES = {}

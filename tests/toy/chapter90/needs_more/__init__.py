@@ -1,0 +1,1 @@
+REQUIRES = ("no_such_package",)
