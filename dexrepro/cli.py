@@ -95,6 +95,7 @@ def _parser() -> argparse.ArgumentParser:
 
     listing = commands.add_parser("list", help="chapters, experiments, cases, figures, claims, errata")
     listing.add_argument("--json", action="store_true")
+    listing.add_argument("--markdown", action="store_true", help="the claims of the book counted by verdict")
     listing.set_defaults(function=list_command)
 
     check = commands.add_parser("check", parents=[selection], help="compare results with the stored baselines")
@@ -250,26 +251,28 @@ def _run_job(config: Any) -> None:
 
 
 def _print_summary(outcome: Any) -> None:
-    from dexrepro.experiment import AFTER_CORRECTION, NOT_EVALUATED, NOT_REPRODUCED, REPRODUCED
+    from dexrepro.claims import NOT_EVALUATED, VERDICTS
     from dexrepro.runner import summary_rows
 
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for column in ("experiment", "wall [s]", "x real time", REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED, "result"):
+    rows = summary_rows(outcome)
+    shown = [verdict for verdict in VERDICTS if any(row["claims"].get(verdict) for row in rows)]
+    for column in ("experiment", "wall [s]", "x real time", *shown, "result"):
         table.add_column(column, justify="left" if column in ("experiment", "result") else "right", no_wrap=True)
     evaluated = True
-    for row in summary_rows(outcome):
+    for row in rows:
         factor = f"{row['real_time_factor']:.1f}" if row["real_time_factor"] else ""
         verdicts = row["claims"]
         evaluated = evaluated and not verdicts.get(NOT_EVALUATED)
-        counts = [str(verdicts.get(key, 0) or "") for key in (REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED)]
+        counts = [str(verdicts.get(key, 0) or "") for key in shown]
         table.add_row(row["experiment"], f"{row['wall']:.1f}", factor, *counts, row["folder"])
     out.print(table)
     for name, reason in outcome.skipped.items():
         out.print(f"{name} skipped: {reason}", markup=False)
     for name, differs in outcome.differs.items():
         if differs and name in outcome.folders:
-            shown = ", ".join(differs[:8]) + (f" and {len(differs) - 8} more" if len(differs) > 8 else "")
-            out.print(f"{name} differs from the book in: {shown}", markup=False)
+            named = ", ".join(differs[:8]) + (f" and {len(differs) - 8} more" if len(differs) > 8 else "")
+            out.print(f"{name} differs from the book in: {named}", markup=False)
     if not evaluated:
         out.print("claims whose metrics this run does not have are not evaluated")
 
@@ -278,8 +281,13 @@ def _print_summary(outcome: Any) -> None:
 
 
 def list_command(options: argparse.Namespace) -> int:
-    """Everything there is, as text or JSON."""
+    """Everything there is, as text or JSON; or the claims of the book counted, as the README's table."""
+    from dexrepro import scoreboard
     from dexrepro.report.listing import listing
+
+    if options.markdown:
+        print(scoreboard.markdown())
+        return OK
 
     data = listing()
     if options.json:

@@ -1,4 +1,4 @@
-"""The vocabulary of a chapter: what an experiment, a recording, a claim, a reference and an erratum are.
+"""The vocabulary of an experiment: configuration, recording, figures, film; claims are in :mod:`dexrepro.claims`.
 
 Everything here is a small value object without input or output. An experiment is a folder of three modules:
 ``experiment.py`` makes numbers, ``figures.py`` shows them, ``claims.py`` says what the book says of them; see
@@ -9,20 +9,22 @@ from __future__ import annotations
 
 import ast
 import importlib
-import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 if TYPE_CHECKING:
+    import matplotlib.figure
     import pandas as pd
     from numpy.typing import NDArray
+
+    from dexrepro.claims import Claim, Reference
 
 Metrics = dict[str, float | int | None]
 
@@ -79,6 +81,12 @@ class Recording:
     def between(self, start: float, end: float = math.inf) -> NDArray[np.bool_]:
         """Mask of the samples with start <= time <= end [s]."""
         return (self.time >= start - 1e-9) & (self.time <= end + 1e-9)
+
+
+Recordings = Mapping[str, Recording]  # by case
+AllMetrics = Mapping[str, Metrics]  # by case
+Drawing: TypeAlias = "matplotlib.figure.Figure"
+Drawings: TypeAlias = "dict[str, matplotlib.figure.Figure]"  # by the number of the figure
 
 
 @dataclass(frozen=True)
@@ -190,186 +198,3 @@ class Experiment:
         if not (self.folder / f"{module}.py").exists():
             return default
         return getattr(importlib.import_module(f"{self.package}.{module}"), name, default)
-
-
-@dataclass(frozen=True)
-class Predicate:
-    """A statement about metrics.
-
-    margin(metrics) is positive when the statement holds, negative when it fails, None when a metric is absent.
-    """
-
-    text: str
-    metrics: tuple[str, ...]
-    margin_of: Callable[[Sequence[float]], float]
-
-    def margin(self, values: Mapping[str, float | int | None]) -> float | None:
-        found = [values.get(name) for name in self.metrics]
-        numbers = [float(value) for value in found if value is not None]
-        return self.margin_of(numbers) if len(numbers) == len(found) else None
-
-    def __str__(self) -> str:
-        return self.text
-
-
-def _relative_gap(smaller: float, larger: float) -> float:
-    scale = max(abs(smaller), abs(larger))
-    return (larger - smaller) / scale if scale > 0 else 0.0
-
-
-def _operand(value: str | float, factor: float) -> str:
-    if not isinstance(value, str):
-        return f"{value * factor:g}"
-    return value if factor == 1 else f"{factor:g} {value}"
-
-
-def less(a: str, b: str | float, factor: float = 1.0) -> Predicate:
-    """a < factor * b, where b is a metric or a number. Margin (factor b - a) / max(|a|, |factor b|).
-
-    Against a bound of 0 the margin is 1 or -1, whatever a: it then tells the verdict alone.
-    """
-    if isinstance(b, str):
-        return Predicate(f"{a} < {_operand(b, factor)}", (a, b), lambda v: _relative_gap(v[0], factor * v[1]))
-    bound = factor * b
-    return Predicate(f"{a} < {bound:g}", (a,), lambda v: _relative_gap(v[0], bound))
-
-
-def greater(a: str, b: str | float, factor: float = 1.0) -> Predicate:
-    """a > factor * b, where b is a metric or a number. Margin (a - factor b) / max(|a|, |factor b|); see ``less``."""
-    if isinstance(b, str):
-        return Predicate(f"{a} > {_operand(b, factor)}", (a, b), lambda v: _relative_gap(factor * v[1], v[0]))
-    bound = factor * b
-    return Predicate(f"{a} > {bound:g}", (a,), lambda v: _relative_gap(bound, v[0]))
-
-
-def within(a: str, low: float, high: float) -> Predicate:
-    """low <= a <= high. Margin: distance to the nearer bound over the width."""
-    if not low < high:
-        raise ValueError(f"within({a}): the lower bound {low} is not below the upper bound {high}")
-    return Predicate(f"{low:g} <= {a} <= {high:g}", (a,), lambda v: min(v[0] - low, high - v[0]) / (high - low))
-
-
-def ordered(*names: str) -> Predicate:
-    """The metrics increase in the order given. Margin: the smallest of the neighbours' margins."""
-    return Predicate(" < ".join(names), names, lambda v: min(_relative_gap(a, b) for a, b in itertools.pairwise(v)))
-
-
-def every(*predicates: Predicate) -> Predicate:
-    """All predicates hold. Margin: the smallest of their margins."""
-    names = tuple(name for predicate in predicates for name in predicate.metrics)
-
-    def margin_of(values: Sequence[float]) -> float:
-        it: Iterator[float] = iter(values)
-        return min(p.margin_of([next(it) for _ in p.metrics]) for p in predicates)
-
-    return Predicate("; ".join(map(str, predicates)), names, margin_of)
-
-
-REPRODUCED = "reproduced"
-AFTER_CORRECTION = "after correction"
-NOT_REPRODUCED = "not reproduced"
-NOT_TESTABLE = "not testable"
-NOT_EVALUATED = "not evaluated"
-
-
-@dataclass(frozen=True)
-class Claim:
-    """What the book says (or, with source "ours", a test that it does not make), as a predicate over metrics.
-
-    Metric names are ``experiment.case.metric`` or, from ``summarise``, ``experiment.metric``; all of a claim's metrics
-    belong to one experiment. ``printed`` is the same statement about the printed form of an equation that an erratum
-    corrects; where it fails and the corrected form holds, the verdict is "after correction". ``not_testable`` gives the
-    reason why nothing can be measured; ``by_construction`` the generator that has the effect built in; ``note`` says
-    what a reader must know beside the verdict.
-    """
-
-    id: str
-    figure: str
-    statement: str
-    predicate: Predicate | None
-    source: str = "book"
-    printed: Predicate | None = None
-    by_construction: str = ""
-    not_testable: str = ""
-    note: str = ""
-    where: str = ""
-
-    def __post_init__(self) -> None:
-        if (self.predicate is None) != bool(self.not_testable):
-            raise ValueError(f"{self.id}: give either a predicate or the reason why it cannot be tested")
-
-    @property
-    def metrics(self) -> tuple[str, ...]:
-        printed = self.printed.metrics if self.printed else ()
-        return (*self.predicate.metrics, *printed) if self.predicate else ()
-
-    @property
-    def experiment(self) -> str:
-        """Name of the experiment whose metrics the claim is about ("" for one that is not testable)."""
-        return self.metrics[0].partition(".")[0] if self.metrics else ""
-
-    def evaluate(self, metrics: Mapping[str, float | int | None]) -> dict[str, Any]:
-        """Verdict, margin and the values they rest on."""
-        margin = self.predicate.margin(metrics) if self.predicate else None
-        printed = self.printed.margin(metrics) if self.printed else None
-        if self.predicate is None:
-            verdict = NOT_TESTABLE
-        elif margin is None or (self.printed and printed is None):
-            verdict = NOT_EVALUATED
-        elif not margin > 0:
-            verdict = NOT_REPRODUCED
-        elif printed is not None and not printed > 0:
-            verdict = AFTER_CORRECTION
-        else:
-            verdict = REPRODUCED
-        return {
-            "id": self.id,
-            "figure": self.figure,
-            "statement": self.statement,
-            "source": self.source,
-            "where": self.where,
-            "predicate": str(self.predicate or ""),
-            "values": {name: metrics.get(name) for name in dict.fromkeys(self.metrics)},
-            "verdict": verdict,
-            "margin": margin,
-            "printed_margin": printed,
-            "by_construction": self.by_construction,
-            "reason": self.not_testable,
-            "note": self.note,
-        }
-
-
-@dataclass(frozen=True)
-class Reference:
-    """A number the book prints, to be shown beside the metric that corresponds to it."""
-
-    metric: str
-    value: float
-    where: str
-    unit: str = ""
-
-
-ERRATUM_KINDS = ("error", "gap", "reading", "slip")
-
-
-@dataclass(frozen=True)
-class Erratum:
-    """Something in the book that a reader who implements it must know.
-
-    kind: "error" (inconsistent with the book's own equations), "gap" (something needed is not printed), "reading"
-        (defensible as printed under the reading named) or "slip" (typesetting, possibly text extraction).
-    switch: the exact override that selects the printed form ("" where it does not run).
-    evidence: names of the metrics that show the effect.
-    """
-
-    id: str
-    equation: str
-    kind: str
-    summary: str
-    correction: str = ""
-    switch: str = ""
-    evidence: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        if self.kind not in ERRATUM_KINDS:
-            raise ValueError(f"{self.id}: kind '{self.kind}' is none of {', '.join(ERRATUM_KINDS)}")

@@ -184,7 +184,7 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
     recordings = {
         case: load_recording(folder / "series", case, entry["status"]) for case, entry in run["cases"].items()
     }
-    claims = [claim.evaluate(flat_metrics) for claim in chapters.load(chapter).claims_of(experiment.name)]
+    claims = [claim.evaluate(flat_metrics).as_dict() for claim in chapters.load(chapter).claims_of(experiment.name)]
     write_json(folder / "claims.json", claims)
     for name in ("tables", "figures"):
         shutil.rmtree(folder / name, ignore_errors=True)

@@ -24,6 +24,7 @@ from scipy import stats
 
 from dexrepro import chapters
 from dexrepro.baselines import baseline_dir
+from dexrepro.claims import Claim, robustness
 from dexrepro.config import (
     InputError,
     Provenance,
@@ -33,7 +34,8 @@ from dexrepro.config import (
     provenance,
     resolved_block,
 )
-from dexrepro.experiment import Claim, Config, Metrics
+from dexrepro.experiment import Config, Metrics
+from dexrepro.measures import binomial_interval
 from dexrepro.pool import pool
 from dexrepro.runner import flat, generator, live, summarise
 from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
@@ -235,7 +237,7 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
             continue
         margins = np.array([margin for margin, _ in pairs])
         holds = int(np.sum(margins > 0))
-        low, high = stats.binomtest(holds, len(pairs)).proportion_ci(method="wilson")
+        low, high = binomial_interval(holds, len(pairs))
         parameter, correlation = _most_influential(margins, [values for _, values in pairs])
         claims[claim.id] = {
             "samples": len(pairs), "holds": holds, "share": holds / len(pairs), "low": low, "high": high,
@@ -252,6 +254,15 @@ def stored(results: Path) -> list[dict[str, Any]]:
     """Every study there is: of those shipped and those made here, the one of more samples; ours where equal."""
     paths = [*(baseline_dir() / "study").glob("*.json"), *_folder(results).glob("*.json")]
     return [read_json(path) for _, path in sorted({path.name: path for path in sorted(paths, key=_size)}.items())]
+
+
+def robustness_of(chapter: str, results: Path = Path("results")) -> dict[str, str]:
+    """What the studies show each claim of a chapter to be: "robust", "fragile" or "open"."""
+    found: dict[str, str] = {}
+    for item in stored(results):
+        if item["chapter"] == chapter:
+            found |= {key: robustness(entry["holds"], entry["samples"]) for key, entry in item["claims"].items()}
+    return found
 
 
 def _most_influential(margins: Any, values: Sequence[Mapping[str, float]]) -> tuple[str | None, float | None]:

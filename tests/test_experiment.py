@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dexrepro.experiment import Claim, Config, Erratum, every, greater, less, ordered, within
+from dexrepro.claims import Claim, Erratum, every, greater, less, ordered, within
+from dexrepro.experiment import Config
 
 numbers = st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6)
 
@@ -37,7 +38,7 @@ def test_margins_are_relative_gaps() -> None:
 
 
 def verdict(claim: Claim, **metrics: float) -> str:
-    return claim.evaluate(metrics)["verdict"]
+    return claim.evaluate(metrics).verdict
 
 
 def test_verdicts() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from conftest import ROOT
@@ -94,3 +95,20 @@ class Law:
         "Law has Any in its signature", "Law.__call__ has Any in its signature",
     ]  # fmt: skip
     assert any("Law.reset has no docstring" in fault for fault in faults(source, set()))
+
+
+SIGNATURES = {
+    "simulate": ["(config: Config, rng: Rng) -> Recording"],
+    "measure": ["(recording: Recording, config: Config) -> Metrics"],
+    "summarise": ["(metrics: AllMetrics, config: Config) -> Metrics"],
+    "draw": ["(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings"],
+}
+
+
+@pytest.mark.parametrize(
+    "module", sorted(ROOT.glob("dexrepro/chapters/*/*/*.py")), ids=lambda m: f"{m.parent.name}.{m.stem}"
+)
+def test_what_an_experiment_offers_has_the_types_of_the_vocabulary(module: Path) -> None:
+    for node in ast.parse(module.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.FunctionDef) and node.name in SIGNATURES:
+            assert f"({ast.unparse(node.args)}) -> {ast.unparse(node.returns)}" in SIGNATURES[node.name], node.name

@@ -14,8 +14,8 @@ import pytest
 from conftest import ROOT
 
 from dexrepro import study
+from dexrepro.claims import Claim, less
 from dexrepro.config import InputError
-from dexrepro.experiment import Claim, less
 from dexrepro.pool import _submit_here
 from dexrepro.storage import read_json
 

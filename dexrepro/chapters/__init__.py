@@ -24,7 +24,8 @@ from typing import Any
 
 import yaml
 
-from dexrepro.experiment import Claim, Erratum, Experiment, Reference
+from dexrepro.claims import Claim, Erratum, Reference
+from dexrepro.experiment import Experiment
 
 ADDED = "DEXREPRO_EXPERIMENTS"
 """The environment variable with the folders of experiments outside the package, as PATH lists folders."""

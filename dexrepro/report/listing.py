@@ -6,6 +6,7 @@ from typing import Any
 
 from dexrepro import chapters
 from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.study import robustness_of
 
 
 def listing() -> dict[str, Any]:
@@ -15,6 +16,7 @@ def listing() -> dict[str, Any]:
 
 def _chapter(number: str) -> dict[str, Any]:
     chapter, composed = chapters.load(number), compose_chapter(number)
+    words = robustness_of(number)
     return {
         "chapter": number,
         "title": chapter.title,
@@ -35,6 +37,12 @@ def _chapter(number: str) -> dict[str, Any]:
                 "statement": claim.statement,
                 "predicate": str(claim.predicate or f"not testable: {claim.not_testable}"),
                 "source": claim.source,
+                "where": claim.where,
+                "control": str(claim.control) if claim.control else None,
+                "no_control": claim.no_control,
+                "credits": claim.credits,
+                "by_construction": claim.by_construction,
+                "robustness": words.get(claim.id, ""),
             }
             for claim in chapter.claims
         ],

@@ -16,22 +16,15 @@ import pandas as pd
 from markupsafe import Markup
 
 from dexrepro import __version__, chapters, study
+from dexrepro.claims import AFTER_CORRECTION, NOT_EVALUATED, REPRODUCED, VERDICTS
 from dexrepro.config import compose_chapter, provenance
-from dexrepro.experiment import (
-    AFTER_CORRECTION,
-    NOT_EVALUATED,
-    NOT_REPRODUCED,
-    NOT_TESTABLE,
-    REPRODUCED,
-    Experiment,
-)
+from dexrepro.experiment import Experiment
 from dexrepro.report import equations, parameters, studies, symbols
 from dexrepro.report.damage import check_result
 from dexrepro.report.sources import Sources
 from dexrepro.report.style import file_stem
 from dexrepro.storage import read_json, whole_folder
 
-VERDICTS = (REPRODUCED, AFTER_CORRECTION, NOT_REPRODUCED, NOT_TESTABLE)
 SCALE = 1.7  # pixels a point of a figure
 KINDS = {
     "error": "Inconsistent with the book's own equations: derived, with measured evidence.",
@@ -143,7 +136,7 @@ class _Report:
             errata.append({**vars(item), "evidence": evidence})
             self._searchable(f"{item.id} {item.equation}: {item.summary}", f"chapter{number}.html#{item.id}")
         rows = [row for entry in experiments for row in entry["parameters"]]
-        untestable = [claim.evaluate({}) for claim in chapter.claims if claim.not_testable]
+        untestable = [claim.evaluate({}).as_dict() for claim in chapter.claims if claim.not_testable]
         runs = [run for run in self._own_runs() if run["chapter"] == number]
         return {
             "number": number,

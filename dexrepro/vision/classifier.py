@@ -111,6 +111,7 @@ class Adam:
         self.second = [np.zeros_like(weight) for weight in weights]
 
     def step(self, weights: list[Single], gradient: list[Single]) -> None:
+        """Move the weights along their gradient, of the same shapes."""
         self.count += 1
         rate, scale = self.rate / (1 - 0.9**self.count), (1 - 0.999**self.count) ** 0.5
         for weight, slope, first, second in zip(weights, gradient, self.first, self.second, strict=True):

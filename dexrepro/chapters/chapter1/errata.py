@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Erratum
+from dexrepro.claims import Erratum
 
 TRACKING = "force_tracking"
 

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Rng
 from dexrepro.control.computed_torque import ComputedTorque
 from dexrepro.control.holding_line import HoldingLineRegulation
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
@@ -42,7 +44,7 @@ def start(config: Config, role: str) -> Array:
     return place
 
 
-def scene(config: Config, rng: Any = None) -> World:
+def scene(config: Config, rng: Rng | None = None) -> World:
     """Both arms, each with a force sensor at its gripper, and a massless balloon that pushes them apart."""
     world = World(step=config.step, perturbation=config.perturbation)
     world.add_body("torso", torso(), (0, 0, 0), collides=False)
@@ -67,7 +69,7 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
     return recording
 
 
-def run(config: Config, rng: Any, path: Callable[[float], Array]) -> Recording:
+def run(config: Config, rng: Rng, path: Callable[[float], Array]) -> Recording:
     """Approach, then hold for the configured duration; time counts from the contact that triggers the law.
 
     path: displacement (3,) [m] of the leader's gripper at the time [s] since then; the operator sees the contact.
@@ -119,7 +121,7 @@ class GripperServo:
         """Whether the next call looks at its target."""
         return self._sample % 4 == 0
 
-    def __call__(self, sense: Any, target: Array) -> list[float]:
+    def __call__(self, sense: Sense, target: Array) -> list[float]:
         """Torque (7,) [N m] towards a place (3,) [m], the measured contact force compensated."""
         inverse = self._inverse
         if self._sample == 0:
@@ -151,7 +153,7 @@ class Leader:
         self._hand = np.linalg.inv(self._map)
         self._path, self._elapsed = path, elapsed
 
-    def __call__(self, sense: Any) -> list[float]:
+    def __call__(self, sense: Sense) -> list[float]:
         if self._servo.due:
             hand = self._hand @ self._path(self._elapsed(sense.time))
             self._target = self._home + self._map @ hand
@@ -175,7 +177,7 @@ class Follower:
         """Time [s] since contact, 0 before it."""
         return max(now - self.contact_time, 0.0)
 
-    def __call__(self, sense: Any) -> list[float]:
+    def __call__(self, sense: Sense) -> list[float]:
         fx, fy, fz = sense.felt
         if self.contact_time == math.inf:
             self.reference = self.reference - np.array((0.0, self._approach, 0.0))

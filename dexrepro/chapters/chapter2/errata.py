@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Erratum
+from dexrepro.claims import Erratum
 
 LINE, ESTIMATION, COMPARISON = "holding_line", "movement_estimation", "holding_comparison"
 STABILITY = "estimation_stability"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Predicate, every, less
+from dexrepro.claims import Predicate, every, less
 
 COMPARISON = "holding_comparison"
 

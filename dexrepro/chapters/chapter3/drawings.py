@@ -8,7 +8,7 @@ import numpy as np
 
 from dexrepro.chapters.chapter3.scene import ARM, centreline, gripper_arm
 from dexrepro.control.remote_centre import closest_point, tool_axis
-from dexrepro.experiment import Config, Recording
+from dexrepro.experiment import Config, Drawing, Recording
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.rotations import tilt
 
@@ -23,7 +23,7 @@ def describe(config: Config) -> str:
     return ", ".join(parts)
 
 
-def picture(image: Any, finding: str) -> Any:
+def picture(image: Any, finding: str) -> Drawing:
     """One rendered view."""
     from dexrepro.report import style
 
@@ -34,7 +34,7 @@ def picture(image: Any, finding: str) -> Any:
     return figure
 
 
-def pictures(images: dict[str, Any], finding: str) -> Any:
+def pictures(images: dict[str, Any], finding: str) -> Drawing:
     """Rendered views side by side, each with its label."""
     from dexrepro.report import style
 
@@ -47,7 +47,7 @@ def pictures(images: dict[str, Any], finding: str) -> Any:
     return figure
 
 
-def steps(recording: Recording, config: Config) -> Any:
+def steps(recording: Recording, config: Config) -> Drawing:
     """The four instants of Fig. 3.6."""
     from dexrepro.report import style
 
@@ -68,7 +68,7 @@ def steps(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def orientation(recording: Recording, config: Config) -> Any:
+def orientation(recording: Recording, config: Config) -> Drawing:
     """Fig. 3.2 from a recorded instant half-way to the opening."""
     from dexrepro.report import style
 
@@ -90,7 +90,7 @@ def orientation(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def shortest_distance(recording: Recording, config: Config) -> Any:
+def shortest_distance(recording: Recording, config: Config) -> Drawing:
     """Fig. 3.3 from a recorded instant half-way to the target."""
     from dexrepro.report import style
 

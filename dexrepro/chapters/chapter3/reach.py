@@ -14,6 +14,7 @@ from dexrepro.control.null_space import consistent_damping, consistent_inverse, 
 from dexrepro.control.remote_centre import centre_force, closest_point, printed_centre_force, tool_axis
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import joint_frames
@@ -103,7 +104,7 @@ class Reach:
         self.observed = np.zeros(7)
         self.nodes = 0
 
-    def __call__(self, sense: Any) -> tuple[Array, Array]:
+    def __call__(self, sense: Sense) -> tuple[Array, Array]:
         config, q, dq = self.config, sense.position, sense.velocity
         centre, state = self._centre(sense.time), State(self.arm, q)
         mass, bias, gravity = self.model.mass_matrix(q), self.model.bias(q, dq), self.model.gravity(q)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Erratum
+from dexrepro.claims import Erratum
 
 ACCURACY, STYLES, TRACKING = "letter_accuracy", "style_transformation", "bounded_tracking"
 UPDATE, CROSSING = "incremental_update", "obstacle_crossing"

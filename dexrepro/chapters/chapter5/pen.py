@@ -8,14 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from dexrepro.chapters.measures import rms
 from dexrepro.control.bounded_neural import barrier
 from dexrepro.control.gravity_pd import GravityPD
 from dexrepro.control.prescribed_performance import PerformanceBound
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms
 from dexrepro.networks import AdaptiveNetwork, Gaussians
 from dexrepro.physics.elements import JointLoad, TipForce, joint_friction
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
 from dexrepro.primitives import Demonstration
@@ -120,7 +121,7 @@ def track(config: Config, target: Reference, tracking: Any, nominal: RigidBodyMo
     position, velocity, acceleration = target
     step, share = config.arm.step, config.arm.contact_estimate if config.arm.drag else 0.0
 
-    def controller(sense: Any) -> Any:
+    def controller(sense: Sense) -> Any:
         k = round(sense.time / step)
         contact = share * (sense.force @ nominal.jacobian(sense.position)[:3]) if share else 0.0
         return tracking(sense.position, sense.velocity, (position[k], velocity[k], acceleration[k]), contact)

@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 
 from dexrepro.control.computed_torque import ComputedTorque
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import Sense
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.inverse_kinematics import InverseKinematics
 
@@ -49,7 +50,7 @@ def follow(
     time = step * np.arange(round(duration / step) + 1)
     angles, rates = path(time), path(time, 1)
 
-    def controller(sense: Any) -> Array:
+    def controller(sense: Sense) -> Array:
         k = min(round(sense.time / step), len(time) - 1)
         return law(angles[k], sense.position, sense.velocity, rates[k])
 

@@ -14,11 +14,12 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
 from dexrepro.chapters.chapter7 import skills
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Recording
 from dexrepro.humans.reaching import Obstacle
+from dexrepro.measures import rms
 from dexrepro.physics.elements import JointLoad, joint_friction
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
@@ -151,7 +152,7 @@ def run(config: Config, reference: Reference, world: World, **options: Any) -> R
     stiffness = reference.stiffness.tolist()
     state = {"index": 0}
 
-    def controller(sense: Any) -> Array:
+    def controller(sense: Sense) -> Array:
         state["index"] = index = min(round(sense.time / config.control_period), len(rows) - 1)
         return law(sense.position, sense.velocity, rows[index], stiffness[index])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Erratum
+from dexrepro.claims import Erratum
 
 DEMONSTRATIONS, LEARNING = "reaching_demonstrations", "reactive_learning"
 STYLES, FUZZY = "style_separation", "fuzzy_generalisation"

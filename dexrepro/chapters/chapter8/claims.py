@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim
+from dexrepro.claims import Claim
 
 CLAIMS = (
     Claim(

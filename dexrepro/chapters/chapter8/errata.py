@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Erratum
+from dexrepro.claims import Erratum
 
 CIRCLE, OBJECT, SPONGE = "circle_tracking", "unknown_object", "sponge"
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from dexrepro.experiment import Metrics
+from dexrepro.experiment import AllMetrics
 
 
 class Variant(NamedTuple):
@@ -20,9 +20,7 @@ class Variant(NamedTuple):
     base: tuple[str, str | float]
 
 
-def sensitivity_table(
-    variants: Iterable[Variant], metrics: Mapping[str, Metrics], names: Mapping[str, str]
-) -> pd.DataFrame:
+def sensitivity_table(variants: Iterable[Variant], metrics: AllMetrics, names: Mapping[str, str]) -> pd.DataFrame:
     """One row a variant: both numbers as run and as varied, and whether the comparison turns around.
 
     names: what each metric is called, with its unit.
@@ -47,7 +45,7 @@ def sensitivity_table(
     return pd.DataFrame(rows)
 
 
-def _pair(sides: tuple[str, str | float], metric: str, metrics: Mapping[str, Metrics]) -> tuple[float, float] | None:
+def _pair(sides: tuple[str, str | float], metric: str, metrics: AllMetrics) -> tuple[float, float] | None:
     values = [metrics.get(side, {}).get(metric) if isinstance(side, str) else side for side in sides]
     if values[0] is None or values[1] is None:
         return None

@@ -1,3 +1,3 @@
-from dexrepro.experiment import Erratum
+from dexrepro.claims import Erratum
 
 ERRATA = (Erratum("E90.01", "(90.1)", "slip", "a sign"),)

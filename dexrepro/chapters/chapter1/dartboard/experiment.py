@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
+from dexrepro.arrays import Rng
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.operator import COMFORTABLE_ROLL, Hand, Operator
 
@@ -26,7 +27,7 @@ def boards() -> Any:
     return np.array([(0.0, y, z) for y in (-0.25, 0.0, 0.25) for z in (0.15, -0.15)])
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     people, rows, shown = rng("people"), [], {}
     for panel in range(config.panels):
         for person in range(config.operators):

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recording, Recordings
 
 from .experiment import MAPPINGS, boards
 
@@ -21,7 +21,7 @@ FIGURES = {
 TABLES = {"T1.D": "Scores with the general and the proposed mapping, for several constant scales and ring widths"}
 
 
-def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "book" not in recordings:
         return {}
     from dexrepro.report import style
@@ -90,7 +90,7 @@ def _draw_speed(axes: Any, recording: Recording) -> None:
     style.panel(axes[0], "b", "slow near a board, fast between")
 
 
-def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     keys = ("wins", "ties", "losses", "p_value", "wins_median", "losses_median", "wins_median_5mm",
             "losses_median_5mm", "wins_median_10mm", "losses_median_10mm", "general_radius", "proposed_radius",
             "general_score", "proposed_score", "general_time", "proposed_time", "general_load",

@@ -10,11 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.followers import PlanarFollower
-from dexrepro.chapters.measures import rms
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import rms
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.world import World
 from dexrepro.robots.planar import PlanarChain, planar
 
@@ -45,7 +47,7 @@ def scene(config: Config) -> World:
     return world
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     dt, law = config.control_period, config.law
     law.reset(0.0)
     with scene(config) as world:
@@ -61,10 +63,10 @@ def simulate(config: Config, rng: Any) -> Recording:
             Elastic("object", ("follower", "leader"), lambda t: float(stiffness(config, t)), x1 - x0, unilateral=True)
         )
 
-        def lead(sense: Any) -> Any:
+        def lead(sense: Sense) -> Any:
             return followers["leader"](sense, x0 + float(motion(config, sense.time)), height)
 
-        def follow(sense: Any) -> Any:
+        def follow(sense: Sense) -> Any:
             own = followers["follower"]
             position = own.chain.forward(sense.position.tolist())[0] - x1
             return own(sense, x1 + float(law(position, float(sense.force[0]))), height)
@@ -148,8 +150,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
     return result
 
 
-def summarise(metrics: Any, config: Config) -> Metrics:
-    own = [metrics.get(f"{case}_proposed", {}).get("rmse") for case in CASES]
-    if any(value is None for value in own):
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
+    found = [metrics.get(f"{case}_proposed", {}).get("rmse") for case in CASES]
+    own = [value for value in found if value is not None]
+    if len(own) < len(found):
         return {}
     return {"spread": float(max(own) / min(own) - 1.0)}

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
 from dexrepro.robots.planar import PlanarChain
 
 from .experiment import CASES, LATE
@@ -30,7 +30,7 @@ TABLES = {"T1.A": "Force error of every law in the three cases of Fig. 1.10"}
 ROLES = {"proposed": "book", "force": "rival", "passive": "plain"}
 
 
-def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
     if "c1_proposed" in recordings:
         figures["1.9"] = _draw_arms(recordings["c1_proposed"], config)
@@ -39,7 +39,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     return figures
 
 
-def _draw_arms(recording: Recording, config: Config) -> Any:
+def _draw_arms(recording: Recording, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, 4, height=1.95, sharex=True, sharey=True)
@@ -65,7 +65,7 @@ def _draw_arms(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def _draw_errors(recordings: dict[str, Recording], metrics: Any) -> Any:
+def _draw_errors(recordings: Recordings, metrics: Any) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(4, 3, height=6.6, sharex=True, sharey="row")
@@ -113,7 +113,7 @@ COLUMNS = {
 }
 
 
-def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     laws = dict.fromkeys(case.partition("_")[2] for case in metrics if case[:2] in CASES)
     rows = []
     for law in laws:

@@ -11,13 +11,15 @@ from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
 from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, TABLE
-from dexrepro.chapters.measures import rms
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
+from dexrepro.measures import rms
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
@@ -29,7 +31,7 @@ ARRIVED = 2.5  # s, DFR has reached the object
 ALONG = np.array([0.0, 1.0, 0.0])
 
 
-def scene(config: Config, rng: Any = None) -> World:
+def scene(config: Config, rng: Rng | None = None) -> World:
     """A soft ball on a stand between the two arms."""
     world = World(step=config.step, perturbation=config.perturbation)
     place, ready = np.array(config.place), config.radius + 0.10
@@ -46,7 +48,7 @@ def scene(config: Config, rng: Any = None) -> World:
     return world
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     dt, cushion = config.control_period, config.cushion
     t = dt * np.arange(round(config.duration / dt) + 1)
     share = np.interp((t - 0.3) / (ARRIVED - 0.3), np.linspace(0, 1, 501), np.r_[0.0, minimum_jerk(500)])
@@ -67,7 +69,7 @@ def simulate(config: Config, rng: Any) -> Recording:
         )  # fmt: skip
         body = world.bodies["object"]
 
-        def follow(sense: Any) -> Any:
+        def follow(sense: Sense) -> Any:
             seen = np.array((body.x, body.y, body.z)) + config.camera_bias
             return own.go(sense, path[round(sense.time / dt)], ALONG, seen, LEVEL @ FLIP)
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 FIGURES = {
     "1.C": Figure(
@@ -18,7 +16,7 @@ FIGURES = {
 TABLES = {"T1.G": "Hand-over from the field to the force law"}
 
 
-def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"latched", "bare"} <= set(recordings):
         return {}
     from dexrepro.report import style
@@ -45,7 +43,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     return {"1.C": figure}
 
 
-def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     table = pd.DataFrame([{"case": case.replace("_", " "), **metrics[case]} for case in recordings])
     names = {"contact": "contact after [s]", "holding_at_end": "holding at the end", "rmse": "RMS force error [N]",
              "bias": "mean force error [N]"}  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, Predicate, Reference, every, less
+from dexrepro.claims import Claim, Predicate, Reference, every, less
 
 HOLDING = "hold_and_move"
 TRIALS = ("t1", "t2", "t3")

@@ -14,13 +14,15 @@ from typing import Any
 import numpy as np
 from scipy import signal
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.claims import PRINTED
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
-from dexrepro.chapters.measures import rms
 from dexrepro.control.facing import facing
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import angle_between, last_outside, rms
 from dexrepro.physics.elements import TipForce
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.soft_object import Cushion, SoftObject
@@ -43,7 +45,7 @@ def middle(config: Config) -> Any:
     return np.array(config.place)
 
 
-def scene(config: Config, rng: Any = None) -> World:
+def scene(config: Config, rng: Rng | None = None) -> World:
     """Two arms that just touch an object on a table."""
     world = World(step=config.step, perturbation=config.perturbation)
     half = 0.5 * config.object.length * np.array([0.0, 1.0, 0.0])
@@ -71,7 +73,7 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
     return Recording(channels | joint_channels(recording["joints"]))
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     law, dt = config.law, config.control_period
     images: dict[str, Any] = {}
     with scene(config, rng) as world:
@@ -92,11 +94,11 @@ def simulate(config: Config, rng: Any) -> Recording:
         law.reset(0.0)
         last = {"reference": 0.0, "measured": 0.0}
 
-        def lead(sense: Any) -> Any:
+        def lead(sense: Sense) -> Any:
             k = round(sense.time / dt)
             return followers["leader"].go(sense, path.position[k], rotations[k])
 
-        def follow(sense: Any) -> Any:
+        def follow(sense: Sense) -> Any:
             k = round(sense.time / dt)
             axis = path.axis[k]
             distance = float((sense.tip - path.position[k]) @ axis)
@@ -137,7 +139,7 @@ def _photographs(world: World, path: HoldPath, images: dict[str, Any]) -> list[t
     return [(round(when, 2), partial(shoot, name)) for name, when in instants.items()]
 
 
-def _fill(world: World, config: Config, rng: Any) -> None:
+def _fill(world: World, config: Config, rng: Rng) -> None:
     """The object's contacts, its varying stiffness and the shifting of what it is filled with."""
     o, noise = config.object, rng("filling")
     parts = {key: o[key] for key in ("fast", "slow", "fast_time", "slow_time")}
@@ -162,7 +164,6 @@ def _condense(recording: Recording, path: HoldPath, world: World, config: Config
     poses = {name: forward(world.arm(name).arm, recording[f"{name}.position"]) for name in SIDES}
     relative = np.swapaxes(poses["leader"][1], -1, -2) @ poses["follower"][1] @ FLIP
     n = len(recording.time)
-    axis = path.axis[:n]
     between = poses["follower"][0] - poses["leader"][0]
     recording.series = {
         "time": recording.time,
@@ -175,7 +176,7 @@ def _condense(recording: Recording, path: HoldPath, world: World, config: Config
         "lag": np.linalg.norm(poses["leader"][0] - path.position[:n], axis=1),
         # Turn of one tool against the other about the holding line.
         "twist": np.arctan2(relative[:, 1, 0], relative[:, 0, 0]),
-        "pointing": np.arccos(np.clip(np.sum(between * axis, axis=1) / np.linalg.norm(between, axis=1), -1, 1)),
+        "pointing": angle_between(between, path.axis[:n]),
         "slip": recording["grip.slip"],
         "object": recording["object.pose"],
         "joints": np.hstack([recording[f"{name}.position"] for name in SIDES]),
@@ -190,13 +191,12 @@ def measure(recording: Recording, config: Config) -> Metrics:
     error = force - desired
     rise = np.flatnonzero(force >= 0.95 * desired)
     early = time < config.settled
-    outside = np.flatnonzero((np.abs(error) > 0.1 * desired) & early)
     return {
         "rmse": rms(error[late]),
         "rmse_measured": rms((recording["measured"] - desired)[late]),
         "rise": float(time[rise[0]]) if len(rise) else config.duration,
         "overshoot": float(max(0.0, force[early].max() / desired - 1.0)),
-        "settling": float(time[outside[-1]]) if len(outside) else 0.0,
+        "settling": last_outside(time[early], error[early], 0.1 * desired),
         "twist": float(np.rad2deg(np.abs(recording["twist"] - recording["twist"][0]).max())),
         "pointing": float(np.rad2deg(recording["pointing"].max())),
         "lag": float(recording["lag"].max()),
@@ -205,7 +205,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Any, config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     ratios: Metrics = {}
     for other in ("passive", "fixed"):
         for trial in PRINTED:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Film, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 
 from .claims import PRINTED
 from .experiment import VIEW
@@ -43,7 +43,7 @@ FILM = Film(
 LAWS = {"proposed": "book", "passive": "rival", "fixed": "plain"}
 
 
-def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
     if all(f"{trial}_{law}" in recordings for trial in PRINTED for law in LAWS):
         figures["1.18"] = _draw_forces(recordings, metrics, config)
@@ -56,7 +56,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     return figures
 
 
-def _draw_forces(recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
+def _draw_forces(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(2, 3, height=3.8, sharey="row")
@@ -89,7 +89,7 @@ def _draw_forces(recordings: dict[str, Recording], metrics: Any, config: Config)
     return figure
 
 
-def _draw_scene(recording: Recording) -> Any:
+def _draw_scene(recording: Recording) -> Drawing:
     from dexrepro.report import style
 
     figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
@@ -99,7 +99,7 @@ def _draw_scene(recording: Recording) -> Any:
     return figure
 
 
-def _draw_task(recording: Recording) -> Any:
+def _draw_task(recording: Recording) -> Drawing:
     from dexrepro.report import style
 
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 6.0))
@@ -122,7 +122,7 @@ def _draw_task(recording: Recording) -> Any:
     return figure
 
 
-def _draw_limits(metrics: Any) -> Any:
+def _draw_limits(metrics: Any) -> Drawing:
     from dexrepro.report import style
 
     groups = {"as\nprinted": "", "one sample\nlate": "_late", "twice\nas stiff": "_stiff", "own\ngain": "_tuned"}
@@ -142,7 +142,7 @@ def _draw_limits(metrics: Any) -> Any:
     return figure
 
 
-def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case, values in metrics.items():
         trial, _, law = case.partition("_")

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.line import press
 from dexrepro.control.holding import AutoregressiveHolding, Compliant
 from dexrepro.control.passive_impedance import PassiveImpedance
@@ -20,7 +21,7 @@ from dexrepro.experiment import Config, Metrics, Recording
 RATE = 200.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     return _growth(config) if config.study == "growth" else _candidate(config)
 
 

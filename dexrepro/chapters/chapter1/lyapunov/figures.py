@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 FIGURES = {
     "1.D": Figure(
@@ -16,7 +14,7 @@ FIGURES = {
 }
 
 
-def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"ideal", "built", "printed", "growth"} <= set(recordings):
         return {}
     from dexrepro.report import style

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, every, greater, less, within
+from dexrepro.claims import Claim, every, greater, less, within
 
 READY = "ready_to_hold"
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Film, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 from dexrepro.physics.rendering import Camera
 
 from .experiment import APPROACH, HOLD, INSTANTS, PITCHED, SHAKEN
@@ -37,7 +35,7 @@ FILM = Film(
 )  # fmt: skip
 
 
-def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "adjustable" not in recordings:
         return {}
     recording = recordings["adjustable"]
@@ -48,7 +46,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     }
 
 
-def _draw_field(field: pd.DataFrame, config: Config) -> Any:
+def _draw_field(field: pd.DataFrame, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, 3, height=2.25, sharey=True)
@@ -77,7 +75,7 @@ def _draw_field(field: pd.DataFrame, config: Config) -> Any:
     return figure
 
 
-def _draw_camera(recording: Recording, config: Config) -> Any:
+def _draw_camera(recording: Recording, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.9)
@@ -98,7 +96,7 @@ def _draw_camera(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def _draw_task(recording: Recording, config: Config) -> Any:
+def _draw_task(recording: Recording, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 7.6))
@@ -145,7 +143,7 @@ def _draw_task(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     columns = {"lag_rms": "lag RMS [m]", "lag_most": "largest lag [m]", "clearance": "least clearance [m]",
                "own_contact": "AFR touches [s]", "partner_contact": "DFR touches [s]", "facing": "facing [deg]",
                "pointing": "pointing [deg]"}  # fmt: skip

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 from scipy.spatial.transform import Rotation
 
+from dexrepro.arrays import Rng
 from dexrepro.control.facing import facing, quaternion_from_rotation_printed
 from dexrepro.control.pose_transformation import ConstantScaling, RelativePose, SpeedScaling
 from dexrepro.experiment import Config, Metrics, Recording
@@ -21,7 +22,7 @@ from dexrepro.robots.rotations import quaternion_from_euler, quaternion_from_rot
 RATE = 1000.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     draws = rng("poses")
     frames = {"errors": _identities(config, draws), "moves": _moves(config)}
     quaternions = quaternion_from_rotation(Rotation.random(3, random_state=draws).as_matrix())

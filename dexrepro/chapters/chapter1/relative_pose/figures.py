@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
 
 FIGURES = {
     "1.5": Figure(
@@ -22,14 +22,14 @@ FIGURES = {
 }
 
 
-def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "default" not in recordings:
         return {}
     frames = recordings["default"].frames
     return {"1.5": _draw_moves(frames["moves"]), "1.6": _draw_triads(frames["triads"].to_numpy())}
 
 
-def _draw_moves(moves: pd.DataFrame) -> Any:
+def _draw_moves(moves: pd.DataFrame) -> Drawing:
     from dexrepro.report import style
 
     durations = sorted(moves["duration"].unique())
@@ -46,7 +46,7 @@ def _draw_moves(moves: pd.DataFrame) -> Any:
     return figure
 
 
-def _draw_triads(triads: Any) -> Any:
+def _draw_triads(triads: Any) -> Drawing:
     from dexrepro.report import style
 
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 2.2))

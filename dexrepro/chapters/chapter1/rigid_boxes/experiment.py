@@ -7,20 +7,21 @@ dimensions. A case repeats the task from several start poses of the box.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
 from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import FLIP, LEVEL, SIDES, TABLE
-from dexrepro.chapters.measures import rms
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.control.potential_field import PotentialField
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
+from dexrepro.measures import binomial_interval, rms
+from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
@@ -35,7 +36,7 @@ BIN = (0.62, 0.2)  # m, centre
 ALONG = np.array([0.0, 1.0, 0.0])
 
 
-def scene(config: Config, rng: Any = None, offset: Any = (0.0, 0.0, 0.0)) -> World:
+def scene(config: Config, rng: Rng | None = None, offset: Any = (0.0, 0.0, 0.0)) -> World:
     """Two arms with palms, a box on a stand and a bin; ``offset``: x, y [m] and yaw [rad] of the box."""
     world = World(step=config.step, perturbation=config.perturbation)
     place = np.array(config.place)
@@ -97,7 +98,7 @@ def field_of(config: Config) -> PotentialField:
     )  # fmt: skip
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     draws = rng("start poses")
     offsets = draws.uniform(-1, 1, (config.starts, 3)) * config.scatter
     recordings, rows = [], []
@@ -120,7 +121,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     )  # fmt: skip
 
 
-def _carry(config: Config, rng: Any, offset: Any, pictures: dict[str, Any] | None) -> tuple[Recording, dict[str, Any]]:
+def _carry(config: Config, rng: Rng, offset: Any, pictures: dict[str, Any] | None) -> tuple[Recording, dict[str, Any]]:
     """The task once; the recording and what became of it."""
     dt = config.control_period
     path, opening = leading(config)
@@ -133,10 +134,10 @@ def _carry(config: Config, rng: Any, offset: Any, pictures: dict[str, Any] | Non
         own.reset(np.array(world.arm("follower").q), world.arm("follower").sense.tip)
         seen = np.array(config.place) + np.array([offset[0], offset[1], 0.0]) + np.array(config.camera_bias)
 
-        def lead(sense: Any) -> Any:
+        def lead(sense: Sense) -> Any:
             return arms["leader"].go(sense, path[round(sense.time / dt)], LEVEL)
 
-        def follow(sense: Any) -> Any:
+        def follow(sense: Sense) -> Any:
             k = round(sense.time / dt)
             own.opening = opening[k]
             return own.go(sense, path[k], ALONG, seen, LEVEL @ FLIP)
@@ -200,18 +201,10 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def wilson(successes: int, runs: int) -> tuple[float, float]:
-    """95 % score interval of a share."""
-    z, p = 1.96, successes / runs
-    centre = (p + z * z / (2 * runs)) / (1 + z * z / runs)
-    half = z * math.sqrt(p * (1 - p) / runs + z * z / (4 * runs * runs)) / (1 + z * z / runs)
-    return centre - half, centre + half
-
-
-def summarise(metrics: Any, config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     sizes = [metrics[size] for size in SIZES if size in metrics]
     if not sizes:
         return {}
     wins, runs = sum(int(m["successes"] or 0) for m in sizes), sum(int(m["runs"] or 0) for m in sizes)
-    low, high = wilson(wins, runs)
+    low, high = binomial_interval(wins, runs)
     return {"success_share": wins / runs, "success_low": low, "success_high": high}

@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Film, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 from dexrepro.physics.rendering import Camera
 
 from .experiment import RELEASED, SIZES
@@ -31,7 +31,7 @@ FILM = Film(
 )  # fmt: skip
 
 
-def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
     if all(size in recordings and recordings[size].images for size in SIZES):
         figures["1.17"] = _draw_boxes(recordings, metrics, config)
@@ -41,7 +41,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     return figures
 
 
-def _draw_boxes(recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
+def _draw_boxes(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 5.6))
@@ -76,7 +76,7 @@ def _draw_boxes(recordings: dict[str, Recording], metrics: Any, config: Config) 
     return figure
 
 
-def _draw_gains(gains: Any, recordings: dict[str, Recording], metrics: Any, config: Config) -> Any:
+def _draw_gains(gains: Any, recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, 5, height=2.0, sharey=True)
@@ -93,7 +93,7 @@ def _draw_gains(gains: Any, recordings: dict[str, Recording], metrics: Any, conf
     return figure
 
 
-def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     columns = {"runs": "runs", "successes": "successes", "slip": "largest slip [m]", "rmse": "RMS force error [N]",
                "bounces": "bounces", "switches": "switches", "least_moved": "least way [m]"}  # fmt: skip
     rows = [{"case": case} | {text: metrics[case].get(key) for key, text in columns.items()} for case in recordings]

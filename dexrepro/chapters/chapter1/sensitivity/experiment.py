@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 from scipy import signal
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.hold_path import hold_path
 from dexrepro.chapters.chapter1.line import carry, press
 from dexrepro.control.force_control import IntegralForceControl
@@ -32,7 +33,7 @@ GAINS = {  # twelve values each; the printed ones lie inside
 }
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     return _tracking(config) if config.study == "tracking" else _carrying(config, rng)
 
 
@@ -112,7 +113,7 @@ STIFFNESSES = np.array([50.0, 75.0, 100.0, 150.0, 200.0, 300.0, 600.0])
 DELAYS = (0, 1, 2)
 
 
-def _carrying(config: Config, rng: Any) -> Recording:
+def _carrying(config: Config, rng: Rng) -> Recording:
     scenes = _scene(config, rng)
     noise = 0.3 * rng("force sensor").standard_normal(len(scenes["partner"]) + 1)
     rows = []
@@ -150,7 +151,7 @@ def _carried(many: int, values: Any = None) -> dict[str, Any]:
 TUNED = {"proposed": 0.1689, "passive": 12.33}  # the best of GAINS on the nominal object; checked by ``tuned_gap``
 
 
-def _scene(config: Config, rng: Any) -> dict[str, Any]:
+def _scene(config: Config, rng: Rng) -> dict[str, Any]:
     """The first trajectory on the holding line, sampled at the plant's step."""
     path = hold_path(config.task, np.zeros(3), rng("trajectory 1"))
     time = config.carry_step * np.arange(round(config.task.duration / config.carry_step))

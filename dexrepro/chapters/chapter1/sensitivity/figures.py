@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Metrics, Recordings
 
 from .experiment import DELAYS
 
@@ -21,7 +21,7 @@ FIGURES = {
 TABLES = {"T1.S": "Variants that change a verdict", "T1.H": "Gains tried for each law and the force error they give"}
 
 
-def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "carrying" not in recordings:
         return {}
     from dexrepro.report import style
@@ -43,7 +43,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     return {"1.E": figure}
 
 
-def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     if not {"tracking", "carrying"} <= set(recordings):
         return {}
     rows = _flips(metrics["tracking"], metrics["carrying"])

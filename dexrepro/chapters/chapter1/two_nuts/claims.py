@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dexrepro.chapters.chapter1.statements import OPERATOR
-from dexrepro.experiment import Claim, every, greater, less
+from dexrepro.claims import Claim, every, greater, less
 
 CLAIMS = (
     Claim(

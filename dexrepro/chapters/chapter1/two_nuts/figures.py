@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
 from dexrepro.humans.operator import COMFORTABLE_ROLL, FOREARM_ROLL
 
 from .experiment import nuts
@@ -26,7 +24,7 @@ FIGURES = {
 TABLES = {"T1.C": "Posture, precision and time of thirteen synthetic operators with both mappings (medians)"}
 
 
-def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     titles = {
         "general": ("1.13", "The general mapping keeps the hand out of its comfortable range"),
         "proposed": ("1.14", "Re-fixing keeps the hand comfortable, a small scale keeps the tool steady"),
@@ -38,7 +36,7 @@ def draw(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict
     }
 
 
-def _draw_history(recording: Recording, text: str, config: Config) -> Any:
+def _draw_history(recording: Recording, text: str, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(2, 1, height=3.2, sharex=True)
@@ -62,6 +60,6 @@ def _draw_history(recording: Recording, text: str, config: Config) -> Any:
     return figure
 
 
-def tabulate(recordings: dict[str, Recording], metrics: Any, config: Config) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = {case: recording.frames["operators"].median() for case, recording in recordings.items()}
     return {"T1.C": pd.DataFrame(rows).T.rename_axis("mapping").reset_index()}

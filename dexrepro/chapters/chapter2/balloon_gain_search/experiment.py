@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2.balloon_movement.experiment import path
 from dexrepro.chapters.chapter2.batch import controlled_by, grouped_laws
 from dexrepro.chapters.chapter2.gain_search import experiment as gain_search
@@ -19,7 +20,7 @@ from dexrepro.physics.sensor import smoothing
 measure = gain_search.measure
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     """Run every candidate along the holding line, against two balloons; candidate 0 is the default setting."""
     rows = [
         controlled_by(law, {**config.run, **setting, "object_stiffness": stiffness}) | labels

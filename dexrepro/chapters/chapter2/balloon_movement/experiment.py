@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import balloon_pair
 from dexrepro.chapters.chapter2.measures import Array, force_error
-from dexrepro.chapters.measures import rms
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import rms
 
 RATE = 20.0
 
@@ -19,7 +18,7 @@ scene = balloon_pair.scene
 stage = balloon_pair.stage
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     config = Config({**config, "law": config.laws[config.controller]})
     tremor = Tremor(config.path.tremor, rng("tremor"))
     return balloon_pair.run(config, rng, lambda t: path(config.path, t) + tremor(t))
@@ -71,7 +70,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """By how much a law's force error exceeds the proposed law's, on the line and on the circle [N]."""
     result: Metrics = {}
     for case in ("force", "passive"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter2 import balloon_pair
 from dexrepro.chapters.chapter2.measures import shown
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 
 FIGURES = {
     "2.9c": Figure(
@@ -32,9 +31,7 @@ FILM = Film(
 )  # fmt: skip
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = [
         {
             "case": case,
@@ -58,13 +55,13 @@ BARS = {**SHOWN, "tuned_force": ("F, tuned", "plain"), "tuned_passive": ("PIm, t
 BARS |= {"tuned_proposed": ("proposed,\ntuned", "book")}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"proposed", "force", "passive"} <= set(recordings):
         return {}
     return {"2.9c": _draw_path(recordings["proposed"]), "2.11": _draw_result(recordings, metrics, config)}
 
 
-def _draw_path(recording: Recording) -> Any:
+def _draw_path(recording: Recording) -> Drawing:
     import matplotlib.pyplot as plt
 
     from dexrepro.report import style
@@ -82,7 +79,7 @@ def _draw_path(recording: Recording) -> Any:
     return figure
 
 
-def _draw_result(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
+def _draw_result(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(2, 2, height=4.8, width_ratios=(1, 1.6))

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import balloon_pair
-from dexrepro.chapters.chapter2.measures import last_outside, mean
-from dexrepro.chapters.measures import rms
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.chapters.chapter2.measures import mean
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import last_outside, rms
 from dexrepro.physics.rendering import Camera
 
 RATE = 50.0
@@ -20,7 +18,7 @@ scene = balloon_pair.scene
 stage = balloon_pair.stage
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     rest = np.zeros(3)
     recording = balloon_pair.run(config, rng, lambda t: rest)
     with scene(config) as world:
@@ -53,7 +51,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Distance [m] between the places that the two starts lead to."""
     places = [[found[f"final_{axis}"] for axis in "xyz"] for found in metrics.values() if "final_x" in found]
     if len(places) < 2:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
 from dexrepro.chapters.chapter2 import balloon_pair
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 
 FIGURES = {
     "2.9": Figure(
@@ -29,13 +26,13 @@ FILM = Film(
 )  # fmt: skip
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if len(recordings) < 2:
         return {}
     return {"2.9": _draw_setup(recordings, config), "2.10": _draw_paths(recordings, metrics, config)}
 
 
-def _draw_setup(recordings: Mapping[str, Recording], config: Config) -> Any:
+def _draw_setup(recordings: Recordings, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, (photo, front) = style.subplots(1, 2, height=2.7, width_ratios=(1.3, 1))
@@ -57,7 +54,7 @@ def _draw_setup(recordings: Mapping[str, Recording], config: Config) -> Any:
     return figure
 
 
-def _draw_paths(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
+def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(2, 2, height=4.4)

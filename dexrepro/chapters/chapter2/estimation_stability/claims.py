@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, every, less, within
+from dexrepro.claims import Claim, every, less, within
 
 STABILITY = "estimation_stability"
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.control.movement_estimation import MovementEstimation
 from dexrepro.experiment import Config, Metrics, Recording
 
@@ -15,7 +16,7 @@ RATE = 50.0
 BLOWN = 100.0  # N, a prediction error beyond this is a divergence
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     return {"growing_regressor": _growing_regressor, "lyapunov": _lyapunov, "reference": _reference}[config.study](
         config
     )

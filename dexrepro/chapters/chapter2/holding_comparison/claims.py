@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dexrepro.chapters.chapter2.statements import ordered_pairs
-from dexrepro.experiment import Claim, every, greater, less, ordered
+from dexrepro.claims import Claim, every, greater, less, ordered
 
 COMPARISON = "holding_comparison"
 

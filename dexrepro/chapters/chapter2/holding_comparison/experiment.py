@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import planar_pair
 from dexrepro.chapters.chapter2.measures import force_error, mean
-from dexrepro.chapters.measures import rms
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import rms
 
 RATE = 50.0
 SETTLED = 20.0  # s, the second period
@@ -18,7 +16,7 @@ SETTLED = 20.0  # s, the second period
 scene = planar_pair.scene
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     with scene(config) as world:
         return planar_pair.run(world, config, config.law or config.laws[config.controller])
 
@@ -36,7 +34,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """What the regulation gains in groups 2 and 3, off minus on [N], mean over the laws both groups have."""
     result: Metrics = {}
     for group, pairs in {

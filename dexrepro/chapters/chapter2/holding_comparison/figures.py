@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter2.measures import shown
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
 
 FIGURES = {
     "2.8": Figure(
@@ -36,9 +33,7 @@ NAMES = {
 LINES = {"force": "plain", "passive_impedance": "rival", "no_impedance": "extra1", "impedance": "book"}
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case in recordings:
         parameters, found = config.cases[case], metrics[case]
@@ -65,7 +60,7 @@ def tabulate(
 GAINS = {"tuned": "tuned", "printed": "printed; time from the start", "total": "printed; time from the start"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
     if {f"s{n}" for n in range(1, 19)} <= set(recordings):
         figures["2.8"] = _draw_histories(recordings, metrics, config)
@@ -84,7 +79,7 @@ def _alike(one: Config, other: Config) -> bool:
     return (one.leader.trajectory, one.desired_force) == (other.leader.trajectory, other.desired_force)
 
 
-def _draw_histories(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_histories(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(4, 2, height=6.9, width_ratios=(3, 1))
@@ -123,7 +118,7 @@ def _draw_histories(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_settings(metrics: Any, config: Config) -> Any:
+def _draw_settings(metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     settings = {

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import planar_pair
 from dexrepro.chapters.chapter2.measures import force_error, mean
-from dexrepro.chapters.measures import rms
 from dexrepro.control.holding_reference import KnownMovement
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import rms
 
 RATE = 50.0
 SETTLED = 5.0  # s
@@ -20,7 +19,7 @@ SETTLED = 5.0  # s
 scene = planar_pair.scene
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     with scene(config) as world:
         partner = world.arm("leader")
         movement = KnownMovement(
@@ -45,7 +44,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     gains: Metrics = {}
     for case in ("case1", "case2"):
         rmse = [metrics.get(f"{case}_{switch}", {}).get("rmse") for switch in ("without", "with")]

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 FIGURES = {
     "2.5": Figure(
@@ -17,7 +14,7 @@ FIGURES = {
 }
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     cases = [case for case in ("case1", "case2") if {f"{case}_with", f"{case}_without"} <= set(recordings)]
     if not cases:
         return {}

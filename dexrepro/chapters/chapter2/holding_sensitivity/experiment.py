@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2.batch import simulate_runs, table_rows
 from dexrepro.chapters.chapter2.holding_comparison import experiment as holding_comparison
 from dexrepro.chapters.chapter2.holding_comparison.claims import CLAIMS
@@ -19,7 +20,7 @@ DIVERGED = 1e3  # N, stands for the error of a run that diverged
 ESTIMATING = ("no_impedance", "impedance")
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     """All variants in one batch; runs that a variant cannot change are those of the default."""
     rows: list[dict[str, Any]] = []
     for name, changes in {"default": {}, **config.variants}.items():

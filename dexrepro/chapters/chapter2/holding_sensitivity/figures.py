@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
 
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Recordings
 
 from .experiment import flipped_claims, margins_of
 
 TABLES = {"T2.S": "Variants that flip a verdict on Table 2.1, with the margins of the claims they touch"}
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows: list[dict[str, Any]] = []
     margins = margins_of(recordings["all"].frames["errors"])
     for name, found in margins.items():

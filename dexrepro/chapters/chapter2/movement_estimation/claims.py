@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dexrepro.chapters.chapter2.statements import ordered_pairs
-from dexrepro.experiment import Claim, every, less, within
+from dexrepro.claims import Claim, every, less, within
 
 ESTIMATION = "movement_estimation"
 COMPARISON = "holding_comparison"

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import planar_pair
-from dexrepro.chapters.chapter2.measures import force_error, last_outside, mean
-from dexrepro.chapters.measures import rms
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.chapters.chapter2.measures import force_error, mean
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import last_outside, rms
 
 RATE = 50.0
 SETTLED = 20.0  # s, from here on a run counts as settled
@@ -18,7 +18,7 @@ SETTLED = 20.0  # s, from here on a run counts as settled
 scene = planar_pair.scene
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     recording = planar_pair.simulate(config)
     # What the book plots as x_c: exact while the two tips stay on the holding line.
     recording.series["rest_position"] = config.rest_length + recording["leader.tip"][:, 0]
@@ -61,7 +61,7 @@ def _replay(recording: Recording, config: Config) -> float:
     return float(np.abs(np.array(replayed) - recording["reference"][start, 0]).max())
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """How the offset of the estimate scales from the desired force of the runs to one a tenth of it."""
     light, full = (metrics.get(case, {}).get("estimation_error") for case in ("light30", "sigma30"))
     return {"offset_ratio": light / full} if light and full else {}

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
 
 FIGURES = {
     "2.6": Figure(
@@ -25,7 +24,7 @@ FIGURES = {
 }
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
     if stiffnesses := [case for case in recordings if case.startswith("k")]:
         figures["2.6"] = _draw_forces(stiffnesses, recordings, metrics, config)
@@ -34,7 +33,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     return figures
 
 
-def _draw_forces(cases: list[str], recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_forces(cases: list[str], recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(width=style.TWO_COLUMNS, height=2.2)
@@ -54,7 +53,7 @@ def _draw_forces(cases: list[str], recordings: Any, metrics: Any, config: Config
     return figure
 
 
-def _draw_estimates(cases: list[str], recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_estimates(cases: list[str], recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(3, len(cases), height=4.6, sharex=True, sharey="row", squeeze=False)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2.planar_pair import path
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.robots.planar import PlanarChain
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     arms = []
     for pose, follower in (("a", config.follower.pose_a), ("b", config.follower.pose_b)):
         for arm, base, q in (

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
 
 FIGURES = {
     "2.3": Figure(
@@ -24,12 +21,12 @@ FIGURES = {
 }
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     frames = next(iter(recordings.values())).frames
     return {"2.3": _draw_forces(frames["forces"]), "2.4": _draw_platform(frames["arms"], frames["paths"])}
 
 
-def _draw_forces(forces: pd.DataFrame) -> Any:
+def _draw_forces(forces: pd.DataFrame) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, 2, height=2.3)
@@ -52,7 +49,7 @@ def _draw_forces(forces: pd.DataFrame) -> Any:
     return figure
 
 
-def _draw_platform(arms: pd.DataFrame, paths: pd.DataFrame) -> Any:
+def _draw_platform(arms: pd.DataFrame, paths: pd.DataFrame) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, 4, height=1.9, width_ratios=(1.45, 1.45, 1, 1))

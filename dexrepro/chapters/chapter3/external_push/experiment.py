@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
 from dexrepro.chapters.chapter3.scene import ARM, ELBOW, FOREARM, MID_FOREARM, Touching, build, cutaway, gripper_arm
-from dexrepro.chapters.measures import rms
 from dexrepro.control.momentum_observer import MomentumObserver
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms
 from dexrepro.physics.elements import Push
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
@@ -54,7 +54,7 @@ def trapezoid(push: Config) -> Callable[[float], tuple[float, ...]]:
     return force
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     centre = np.array(config.centre, dtype=float)
     with scene(config) as world:
         recording = reach.run(world, config, lambda _: centre, Touching(world))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ import pandas as pd
 from dexrepro.chapters.chapter3.measures import headed
 from dexrepro.chapters.chapter3.scene import FILMED
 from dexrepro.control.momentum_observer import MomentumObserver
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 
 FIGURES = {
     "3.1": Figure(
@@ -44,7 +43,7 @@ FILM = Film(
 JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures: dict[str, Any] = {"3.1": _draw_steps()}
     if "plus" in recordings:
         figures["3.11"] = _draw_torques(recordings, metrics, config)
@@ -54,7 +53,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     return figures
 
 
-def _draw_steps() -> Any:
+def _draw_steps() -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.3)
@@ -74,7 +73,7 @@ def _draw_steps() -> Any:
     return figure
 
 
-def _draw_torques(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_torques(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     recording, push = recordings["plus"], config.cases["plus"].push
@@ -110,7 +109,7 @@ CURVES = {
 }
 
 
-def _draw_effect(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_effect(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, (left, right) = style.subplots(1, 2, height=2.9)
@@ -135,7 +134,7 @@ def _draw_effect(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_sweep(table: pd.DataFrame) -> Any:
+def _draw_sweep(table: pd.DataFrame) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.4)
@@ -152,9 +151,7 @@ def _draw_sweep(table: pd.DataFrame) -> Any:
     return figure
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     names = ("observer_error", "observer_change_error", "observer_lag", "rcm_rest", "rcm_peak", "rcm_final",
              "rcm_recovery_time", "error_peak", "limit_margin", "finished")  # fmt: skip
     rows = [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, Predicate, every, greater, less
+from dexrepro.claims import Claim, Predicate, every, greater, less
 
 FIXED = "fixed_opening"
 REACHES = (1, 2, 3, 4)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
 from dexrepro.chapters.chapter3.scene import CAMERA, Touching, build, cutaway
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 
 RATE = 50.0
 REACHES = (1, 2, 3, 4)
@@ -19,7 +17,7 @@ scene = build
 stage = cutaway
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     centre = np.array(config.centre, dtype=float)
     with build(config) as world:
         recording = reach.run(world, config, lambda _: centre, Touching(world))
@@ -40,7 +38,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     return reach_metrics(recording, config)
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Over the reaches: the worst of the default, and how much larger Dis_R is without the null-space torque."""
 
     def values(prefix: str, metric: str) -> list[float]:

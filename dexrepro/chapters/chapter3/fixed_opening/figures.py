@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ import pandas as pd
 from dexrepro.chapters.chapter3 import drawings
 from dexrepro.chapters.chapter3.measures import COLUMNS, headed
 from dexrepro.chapters.chapter3.scene import FILMED
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 
 from .experiment import REACHES
 
@@ -61,7 +60,7 @@ FILM = Film(
 )  # fmt: skip
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures: dict[str, Any] = {}
     for n in REACHES:
         if f"reach{n}" in recordings:
@@ -85,7 +84,7 @@ CURVES = {
 }
 
 
-def _draw_reach(n: int, recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_reach(n: int, recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, (left, right) = style.subplots(1, 2, height=2.6)
@@ -108,9 +107,7 @@ def _draw_reach(n: int, recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = [
         {"case": case, "reading": drawings.describe(config.cases[case]), **values}
         for case, values in metrics.items()
@@ -141,7 +138,7 @@ VARIANTS = (
 )
 
 
-def _sensitivity(metrics: Mapping[str, Metrics]) -> pd.DataFrame:
+def _sensitivity(metrics: AllMetrics) -> pd.DataFrame:
     rows = []
     for case, what, claim, metric, bound, base in VARIANTS:
         value, before = metrics.get(case, {}).get(metric), metrics.get(base, {}).get(metric)

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.vision.classifier import GraspClassifier, confusion
 
 NAMES = ("safe", "unsafe", "bad")
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     patches, labels, new_patches, new_labels = _data(config, rng)
     classifier = GraspClassifier(config.network_seed, config.learning_rate, config.batch)
     rows = []
@@ -34,7 +35,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     return recording
 
 
-def _data(config: Config, rng: Any) -> tuple[Any, Any, Any, Any]:
+def _data(config: Config, rng: Rng) -> tuple[Any, Any, Any, Any]:
     """Training and test patches with labels: new scenes for the test, never patches of a scene trained on."""
     if config.dataset == "synthetic":
         from dexrepro.vision.tabletop import training_set

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Metrics, Recording, Recordings
 
 from .experiment import NAMES
 
@@ -29,7 +28,7 @@ FIGURES = {
 TABLES = {"T3.F": "Confusion on new scenes (rows: true class)"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures: dict[str, Any] = {}
     wide = recordings.get("wide")
     if wide is None:
@@ -40,7 +39,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     return figures
 
 
-def _draw_training(recording: Recording, found: Metrics) -> Any:
+def _draw_training(recording: Recording, found: Metrics) -> Drawing:
     from dexrepro.report import style
 
     figure, (left, right) = style.subplots(1, 2, height=2.5, width_ratios=(1.4, 1))
@@ -63,7 +62,7 @@ def _draw_training(recording: Recording, found: Metrics) -> Any:
     return figure
 
 
-def _draw_example(recording: Recording) -> Any:
+def _draw_example(recording: Recording) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.7)
@@ -86,9 +85,7 @@ def _draw_example(recording: Recording) -> Any:
     return figure
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     tables = []
     for case, recording in recordings.items():
         table = recording.frames["confusion"].copy()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,11 +13,12 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.ndimage import find_objects
 from scipy.ndimage import label as regions_of
-from scipy.stats import beta
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.scene import ARM, Touching, add_box, cutaway, gripper_arm, start_posture
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import binomial_interval
 from dexrepro.physics.rendering import Camera, Overhead
 from dexrepro.physics.world import World
 from dexrepro.vision.classifier import GraspClassifier
@@ -53,7 +54,7 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
     return cutaway(world, recording, config)
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     classifier = _trained(config, rng) if config.choice == "network" else None
     scenes, draws, pick = rng("scenes"), rng("draws"), rng("pick")
     recording, rows = Recording(), []
@@ -78,7 +79,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     return recording
 
 
-def _trained(config: Config, rng: Any) -> GraspClassifier:
+def _trained(config: Config, rng: Rng) -> GraspClassifier:
     classifier = GraspClassifier(config.network_seed, config.learning_rate, config.batch)
     patches, labels = training_set(config, config.box.size, config.scenes, rng("train"), config.patch_size)
     classifier.fit(patches + np.float32(config.perturbation), labels, config.epochs)
@@ -213,12 +214,13 @@ def _moved(item: Item, body: Any) -> Item:
 def measure(recording: Recording, config: Config) -> Metrics:
     table = recording.frames["scenes"]
     count, trials = int(table.lifted.sum()), len(table)
+    low, high = binomial_interval(count, trials, "exact")
     return {
         "lifted": count,
         "trials": trials,
         "success": count / trials,
-        "success_low": float(beta.ppf(0.025, count, trials - count + 1)) if count else 0.0,
-        "success_high": float(beta.ppf(0.975, count + 1, trials - count)) if count < trials else 1.0,
+        "success_low": low,
+        "success_high": high,
         "opening_error_max": float(table.opening_error.max()),
         "good_grasps": int((table.truly != "bad").sum()),
         "scenes_with_good_grasp": int((table.possible > 0).sum()),
@@ -226,7 +228,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """By how much the chosen grasps' success exceeds that of the random ones."""
     values = [metrics.get(case, {}).get("success") for case in ("chosen", "random")]
     return {"success_gain": None if None in values else values[0] - values[1]}  # type: ignore[operator]

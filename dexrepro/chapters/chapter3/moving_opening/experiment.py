@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
 from dexrepro.chapters.chapter3.scene import ARM, Touching, build, cutaway
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
 
@@ -43,7 +43,7 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
     return shown
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     centre = path(config)
     with scene(config) as world:
         recording = reach.run(world, config, centre, Touching(world))
@@ -74,7 +74,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     return metrics
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """How much larger the mean Dis_R is without the null-space torque."""
     result: Metrics = {}
     for name, (without, whole) in {"default": ("free", "track"), "position": ("posfree", "pos")}.items():

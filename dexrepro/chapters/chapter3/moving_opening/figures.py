@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
@@ -10,7 +9,7 @@ import pandas as pd
 from dexrepro.chapters.chapter3 import drawings
 from dexrepro.chapters.chapter3.measures import headed
 from dexrepro.chapters.chapter3.scene import FILMED
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Metrics, Recording, Recordings
 
 _SHOWN = "The simulated arm and the moving lid {} after its movement began. The book shows photographs."
 FIGURES = {
@@ -37,7 +36,7 @@ FILM = Film(
 )  # fmt: skip
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures: dict[str, Any] = {}
     run = recordings.get("track")
     if run is None:
@@ -51,7 +50,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     return figures
 
 
-def _draw_path(run: Recording, found: Metrics, config: Config) -> Any:
+def _draw_path(run: Recording, found: Metrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, (left, right) = style.subplots(1, 2, height=2.4)
@@ -78,7 +77,7 @@ CURVES = {
 }
 
 
-def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, (left, right) = style.subplots(1, 2, height=2.7)
@@ -100,9 +99,7 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = [
         {"case": case, "reading": drawings.describe(config.cases[case]), **values}
         for case, values in metrics.items()

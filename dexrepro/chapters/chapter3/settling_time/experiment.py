@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Rng
 from dexrepro.control.fixed_time import secant, settling_bound
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.physics.model import RigidBodyModel
@@ -18,7 +19,7 @@ from dexrepro.robots.baxter import baxter, posture
 Array = NDArray[np.float64]
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     directions = rng("directions").standard_normal((config.directions, 7))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     plant = ErrorDynamics(config)

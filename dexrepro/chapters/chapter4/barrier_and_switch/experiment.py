@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter4 import two_link
 from dexrepro.chapters.chapter4.measures import tracking
 from dexrepro.experiment import Config, Metrics, Recording
@@ -15,7 +14,7 @@ RATE = 50.0
 scene = two_link.scene
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     recording = two_link.simulate(config)
     recording.frames.clear()
     return recording

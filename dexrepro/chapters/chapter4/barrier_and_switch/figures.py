@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from dexrepro.control.global_adaptive import Switch
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 FIGURES = {
     "4.3": Figure(
@@ -26,7 +25,7 @@ TABLES = {
 }
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     from dexrepro.report import style
 
     figure, ((inside, outside), (share, error)) = style.subplots(2, 2, height=3.8)
@@ -55,7 +54,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     return {"4.3": figure}
 
 
-def _draw_run(recordings: Mapping[str, Recording], share: Any, error: Any) -> None:
+def _draw_run(recordings: Recordings, share: Any, error: Any) -> None:
     from dexrepro.report import style
 
     base = recordings["base"]
@@ -107,7 +106,7 @@ TURNS = (
 )
 
 
-def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     found = {case: numbers for case, numbers in metrics.items() if case in config.cases}
     rows = [{"case": case, **{label: m.get(name) for name, label in COLUMNS.items()}} for case, m in found.items()]
     turns = []

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.networks import AdaptiveNetwork, Basis, Gaussians, GrowingGaussians, Lattice
 
 RATE = 0.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     draw = rng("inputs")
     rows = []
     for nodes in config.nodes:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 from dexrepro.physics.rendering import Camera
 
 FIGURES = {
@@ -43,7 +42,7 @@ BARS = {
 }
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     drawn = {}
     if "reuse" in recordings and recordings["reuse"].images:
         drawn["4.11"] = _draw_phases(recordings["reuse"], config)
@@ -52,7 +51,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     return drawn
 
 
-def _draw_phases(recording: Recording, config: Config) -> Any:
+def _draw_phases(recording: Recording, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, 3, height=2.6)
@@ -66,7 +65,7 @@ def _draw_phases(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
+def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(2, 3, height=4.4)
@@ -96,7 +95,7 @@ def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metr
     return figure
 
 
-def _draw_bars(figure: Any, axes: Any, metrics: Mapping[str, Metrics]) -> None:
+def _draw_bars(figure: Any, axes: Any, metrics: AllMetrics) -> None:
     from dexrepro.report import style
 
     grid = axes[1, 1].get_gridspec()
@@ -127,7 +126,7 @@ COLUMNS = {
 }
 
 
-def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     rows = [
         {"case": case, **{label: found.get(name) for name, label in COLUMNS.items()}}
         for case, found in metrics.items()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, Reference, every, greater, less, ordered
+from dexrepro.claims import Claim, Reference, every, greater, less, ordered
 
 S = "skill_reuse"
 EQUAL_GAIN = (

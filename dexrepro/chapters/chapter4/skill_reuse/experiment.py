@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter4 import two_link
 from dexrepro.chapters.chapter4.measures import between, tracking
 from dexrepro.chapters.chapter4.two_link import ELLIPSE, FROZEN, large
@@ -16,7 +15,7 @@ RATE = 50.0
 scene = two_link.scene
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     return two_link.simulate(config)
 
 

@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter4.two_link import ELLIPSE
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import Config, Drawing, Drawings, Figure, Metrics, Recording
 from dexrepro.report import style
 
 ARM = "Two-link arm in PyBullet under the law's torque, gravity and 2 N at the tip. "
@@ -57,7 +57,7 @@ FIGURES = {
 TABLES = {"T4.A": "Ellipse after training: errors, oscillation, nodes and gain of every method"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     drawn: dict[str, Any] = {}
     finished = {case: recording for case, recording in recordings.items() if recording.status == "finished"}
     for identifier, case, threshold in (("4.8", "broad20", 20), ("4.9", "broad30", 30), ("4.10", "broad50", 50)):
@@ -87,7 +87,7 @@ COLUMNS = {
 }
 
 
-def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     rows = []
     for case, found in metrics.items():
         if case in config.cases:
@@ -132,7 +132,7 @@ def stroke_ends(config: Config) -> Array:
     return np.array(config.task.centre) + np.stack([-end, end], axis=1)
 
 
-def motions_and_nodes(recording: Recording, config: Config) -> Any:
+def motions_and_nodes(recording: Recording, config: Config) -> Drawing:
     """Fig. 4.1: what is trained, what is drawn afterwards, and where the nodes go."""
     figure, axes = style.subplots(1, 4, height=2.2)
     for start, end in stroke_ends(config):
@@ -176,7 +176,7 @@ def _circle(centre: Array, radius: float, **options: Any) -> Any:
     return Circle(tuple(centre), radius, facecolor="none", linewidth=0.8, **options)
 
 
-def arm(recording: Recording, config: Config) -> Any:
+def arm(recording: Recording, config: Config) -> Drawing:
     """Fig. 4.4: the rendered arm with strokes and ellipse at their places."""
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.2)
     axes.imshow(recording.images["arm"], extent=(0, 2, -1, 1))
@@ -193,7 +193,7 @@ def arm(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Any:
+def paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     """Fig. 4.5: the ellipse by three methods, and the four training strokes of the book's."""
     figure, axes = style.subplots(2, 4, height=3.4)
     shown = [case for case in ("rbf2", "rbf10", "fuzzy", "broad20") if case in recordings]
@@ -220,7 +220,7 @@ def paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Any:
     return figure
 
 
-def errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Any:
+def errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     """Fig. 4.6: both error components within the prescribed bounds, and the size of the error."""
     figure, axes = style.subplots(3, 2, height=5.6)
     shown = {case: METHODS[case] for case in METHODS if case in recordings}
@@ -253,7 +253,7 @@ def errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Any:
     return figure
 
 
-def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> Any:
+def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     """Fig. 4.7: nodes over the strokes and the ellipse, with the start of each run enlarged."""
     shown = [case for case in ("broad20", "broad30", "broad50") if case in recordings]
     figure, (top, *bottom) = _count_axes()
@@ -295,7 +295,7 @@ def _shade(number: int) -> str:
     return "#EAF2F8" if number % 2 == 0 else "#FFFFFF"
 
 
-def weights(recording: Recording, metrics: Metrics, threshold: int) -> Any:
+def weights(recording: Recording, metrics: Metrics, threshold: int) -> Drawing:
     """Figs. 4.8 to 4.10: weights of the Gaussians, one line a node, over the four strokes."""
     figure, axes = style.subplots(2, 4, height=3.4, sharex=True, sharey="row")
     frame = recording.frames["weights"]

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import letters, pen
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.physics.rendering import Camera
+from dexrepro.physics.world import World
 from dexrepro.primitives import DMP, extend
 from dexrepro.robots.arm import Pose, Shape
 
@@ -18,7 +20,7 @@ INK = (0.05, 0.1, 0.4, 1.0)
 VIEW = Camera(target=(0.10, 0.0, -0.06), distance=0.36, yaw=125.0, pitch=-35.0, field_of_view=42.0)
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     path = learned_path(config.hand.letter, config, rng)
     target = pen.reference(pen.on_paper(path), config.arm.step)
     nominal = pen.model(config)
@@ -30,7 +32,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     return recording
 
 
-def learned_path(letter: str, config: Config, rng: Any) -> Any:
+def learned_path(letter: str, config: Config, rng: Rng) -> Any:
     """What the primitives make of a letter [cm], at the arm's pace: an IDMP grown from the letter a, or a DMP."""
     hand, training = rng("demonstration"), config.training
     shown = {name: letters.demonstration(name, config, hand) for name in config.hand.letters}
@@ -60,7 +62,7 @@ def scene(config: Config) -> Any:
     return world
 
 
-def stage(world: Any, recording: Recording, config: Config) -> Recording:
+def stage(world: World, recording: Recording, config: Config) -> Recording:
     """Shows the ink: short strokes that wait below the table until the pen has made them."""
     tip = recording["arm.tip"]
     marks = np.linspace(0, len(tip) - 1, 33).astype(int)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter5 import pen
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 from dexrepro.robots.pen_arm import pen_arm_tip
 
 from .experiment import VIEW
@@ -43,7 +42,7 @@ FILM = Film(
 )  # fmt: skip
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
     written = [case for case in recordings if case.startswith("letter_")]
     if written:
@@ -63,7 +62,7 @@ SHOWN = {
 }
 
 
-def _draw_letters(cases: list[str], recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]) -> Any:
+def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(1, len(cases), height=2.0, sharex=True, sharey=True, squeeze=False)
@@ -80,7 +79,7 @@ def _draw_letters(cases: list[str], recordings: Mapping[str, Recording], metrics
     return figure
 
 
-def _draw_picture(recording: Recording) -> Any:
+def _draw_picture(recording: Recording) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.plt.subplots(figsize=(style.ONE_COLUMN, 2.4))
@@ -90,7 +89,7 @@ def _draw_picture(recording: Recording) -> Any:
     return figure
 
 
-def _draw_errors(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
+def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(3, 4, height=4.8, sharex=True)
@@ -150,7 +149,7 @@ SENSITIVITY = (
 )
 
 
-def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     names = {
         "bound_use": "largest share of the bound",
         "outside": "share of the time outside",

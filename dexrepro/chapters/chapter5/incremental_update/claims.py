@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, every, greater, less
+from dexrepro.claims import Claim, every, greater, less
 
 UPDATE = "incremental_update"
 

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from scipy.special import expit
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import letters
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.primitives import GrowingRegression, extended_pseudo_inverse, forcing_target, least_squares, phase
@@ -17,11 +18,11 @@ from dexrepro.primitives import GrowingRegression, extended_pseudo_inverse, forc
 KINDS = ("independent", "dependent", "mixed")
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     return PARTS[config.part](config, rng)
 
 
-def _mechanism(config: Config, rng: Any) -> Recording:
+def _mechanism(config: Config, rng: Rng) -> Recording:
     kernels = letters.kernels(config.kernels.count, config, None)
     features = letters.features(kernels, config.features.count, config, rng("features"))
     instants = np.linspace(0, config.dmp.duration, config.dmp.samples)
@@ -35,7 +36,7 @@ def _mechanism(config: Config, rng: Any) -> Recording:
     return Recording(series={"time": instants}, frames={"blocks": frame}, steps=len(instants))
 
 
-def _lemma(config: Config, rng: Any) -> Recording:
+def _lemma(config: Config, rng: Rng) -> Recording:
     """Random matrices that gain columns: independent, dependent, or two of each; three readings of the lemma."""
     generator, rows = rng("matrices"), []
     for draw in range(config.lemma.draws):
@@ -80,7 +81,7 @@ READINGS: dict[str, Callable[[Any, Any, Any], Any]] = {
 }
 
 
-def _activations(config: Config, rng: Any) -> Recording:
+def _activations(config: Config, rng: Rng) -> Recording:
     """Other maps than the sigmoid in (5.11): does sum phi + sum eta, which divides everything, change its sign?"""
     kernels = letters.kernels(config.kernels.count, config, None)
     s = phase(np.linspace(0, config.dmp.duration, config.dmp.samples), config.dmp.duration, config.dmp.decay)
@@ -99,7 +100,7 @@ def _activations(config: Config, rng: Any) -> Recording:
 MAPS: dict[str, Callable[[Any], Any]] = {"sigmoid": expit, "tanh": np.tanh, "sin": np.sin}
 
 
-def _drift(config: Config, rng: Any) -> Recording:
+def _drift(config: Config, rng: Rng) -> Recording:
     """A letter's forcing on features that are appended five at a time: does the update keep up with solving anew?
 
     The features are taken without their common denominator, so that appending one changes no other; the target is
@@ -125,7 +126,7 @@ def _drift(config: Config, rng: Any) -> Recording:
     return Recording(frames={"drift": pd.DataFrame(rows, columns=["kernels", "m", "gap"])}, steps=len(rows))
 
 
-def _cost(config: Config, rng: Any) -> Recording:
+def _cost(config: Config, rng: Rng) -> Recording:
     """Multiplications for five more columns, by updating and by solving anew."""
     samples, step, generator, rows = round(1.5 * config.dmp.samples), config.features.block, rng("matrices"), []
     target = generator.standard_normal((samples, 2))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
 
 FIGURES = {
     "5.2": Figure(
@@ -28,7 +27,7 @@ FIGURES = {
 TABLES = {"T5.K": "Largest relative error of the updated pseudo-inverse by kind of added columns"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
     if "mechanism" in recordings:
         figures["5.2"] = _draw_mechanism(recordings["mechanism"])
@@ -37,7 +36,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     return figures
 
 
-def _draw_mechanism(recording: Recording) -> Any:
+def _draw_mechanism(recording: Recording) -> Drawing:
     from dexrepro.report import style
 
     frame = recording.frames["blocks"]
@@ -66,7 +65,7 @@ def _draw_mechanism(recording: Recording) -> Any:
     return figure
 
 
-def _draw_cost(cost: pd.DataFrame, drift: pd.DataFrame) -> Any:
+def _draw_cost(cost: pd.DataFrame, drift: pd.DataFrame) -> Drawing:
     from dexrepro.report import style
 
     figure, (left, right) = style.subplots(1, 2, height=2.3)
@@ -83,7 +82,7 @@ def _draw_cost(cost: pd.DataFrame, drift: pd.DataFrame) -> Any:
     return figure
 
 
-def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     if "lemma" not in recordings:
         return {}
     frame = recordings["lemma"].frames["lemma"]

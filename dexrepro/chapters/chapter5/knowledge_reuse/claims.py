@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dexrepro.chapters.chapter5.statements import TARGETS
-from dexrepro.experiment import Claim, Predicate, every, less
+from dexrepro.claims import Claim, Predicate, every, less
 
 REUSE = "knowledge_reuse"
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import pen
 from dexrepro.chapters.chapter5.bounded_tracking import experiment as bounded_tracking
 from dexrepro.experiment import Config, Metrics, Recording
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     nominal, generator = pen.model(config), rng("nodes")
     centres, weights, rows, steps = np.empty((0, 6)), None, [], 0
     for index, letter in enumerate(config.hand.sequence):

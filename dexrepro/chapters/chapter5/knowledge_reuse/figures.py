@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 FIGURES = {
     "5.E": Figure(
@@ -21,7 +20,7 @@ FIGURES = {
 TABLES = {"T5.I": "RMS joint error [mrad] with weights kept, learned anew, or kept under the printed sign"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     from dexrepro.report import style
 
     if not {"kept", "anew"} <= set(recordings):
@@ -42,7 +41,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     return {"5.E": figure}
 
 
-def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     parts = [recording.frames["letters"].assign(weights=case) for case, recording in recordings.items()]
     names = {
         "early": f"first {config.early:g} s [mrad]",

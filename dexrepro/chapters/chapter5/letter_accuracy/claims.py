@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, Predicate, every, greater, less
+from dexrepro.claims import Claim, Predicate, every, greater, less
 
 ACCURACY = "letter_accuracy.default"
 PRINTED_SIGN = "letter_accuracy.printed_damping"

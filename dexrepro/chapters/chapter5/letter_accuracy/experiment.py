@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import letters
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.primitives import DMP, Demonstration, GaussianKernels, TruncatedKernels, extend
 
 METHODS = {"dmp": "DMP", "dmp_plus": "DMP+", "idmp": "IDMP"}
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     hand, generator, rows, runs = rng("demonstration"), rng("kernels"), [], []
     written = letters.demonstrations(config.hand.letter, config.demonstrations, config.kernels.draws, config, hand)
     for count in config.kernels.counts:
@@ -129,7 +129,7 @@ def _share(holds: Any) -> float:
     return float(np.mean(holds))
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Whether the IDMP's median error falls with every step in m, and how far below the DMP+ it ends."""
     default, result = metrics.get("default", {}), {}
     for count in config.kernels.counts:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Metrics, Recording, Recordings
 
 from .experiment import METHODS
 
@@ -32,14 +31,14 @@ TABLES = {
 }
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "default" not in recordings:
         return {}
     recording, found = recordings["default"], metrics["default"]
     return {"5.3": _draw_paths(recording, found, config), "5.A": _draw_features(recording, found, config)}
 
 
-def _draw_paths(recording: Recording, metrics: Metrics, config: Config) -> Any:
+def _draw_paths(recording: Recording, metrics: Metrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     lines = {"dmp": "plain", "dmp_plus": "rival", "idmp": "book"}
@@ -75,7 +74,7 @@ def _power(value: float) -> str:
     return rf"{digits}·10$^{{{int(power)}}}$"
 
 
-def _draw_features(recording: Recording, metrics: Metrics, config: Config) -> Any:
+def _draw_features(recording: Recording, metrics: Metrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     draws, added = recording.frames["draws"], config.features.counts
@@ -103,7 +102,7 @@ def _draw_features(recording: Recording, metrics: Metrics, config: Config) -> An
     return figure
 
 
-def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     tables = {}
     if "default" in recordings:
         tables["T5.A"] = _errors_table(recordings["default"].frames["draws"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, Predicate, every, greater, less
+from dexrepro.claims import Claim, Predicate, every, greater, less
 
 CROSSING = "obstacle_crossing.default"
 PRINTED_CROSSING = "obstacle_crossing.printed_damping"

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter5 import crossing
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
 from dexrepro.humans.crossing import obstacle_boxes
 from dexrepro.report import style
 
@@ -33,7 +32,7 @@ TABLES = {
 }
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "default" not in recordings:
         return {}
     recording, found = recordings["default"], metrics["default"]
@@ -43,7 +42,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     }
 
 
-def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     tables = {}
     if "default" in recordings:
         reached = recordings["default"].frames["goals"]
@@ -66,7 +65,7 @@ def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics]
 COLOURS = {1: style.EXTRA[1], 2: style.EXTRA[0], 3: style.BOOK}  # of the skills, by blocks
 
 
-def crossings(recording: Recording, metrics: Any, config: Config) -> Any:
+def crossings(recording: Recording, metrics: Any, config: Config) -> Drawing:
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.0))
     grid = figure.add_gridspec(2, 4, width_ratios=(1.15, 1, 1.15, 1))
     paths, reached = recording.frames["paths"], recording.frames["goals"]
@@ -157,7 +156,7 @@ def _distances(axes: Any, reached: Any) -> None:
     axes.set_title(f"clear by {reached.clearance.min():.2f} cm", fontsize=7, fontweight="normal")
 
 
-def changes(recording: Recording, metrics: Any, config: Config) -> Any:
+def changes(recording: Recording, metrics: Any, config: Config) -> Drawing:
     frame = recording.frames["changes"]
     figure, axes = style.subplots(1, 2, height=2.2, sharey=True)
     for panel, blocks in zip(axes, crossing.HEIGHTS[1:]):

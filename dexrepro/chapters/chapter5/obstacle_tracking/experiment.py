@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import crossing, pen
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.crossing import clearance, obstacle_boxes
 from dexrepro.physics.rendering import Camera
+from dexrepro.physics.world import World
 from dexrepro.robots.arm import Pose, Shape
 
 RATE = 100.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     hand = rng("demonstration")
     shown = {b: crossing.averaged(crossing.repetitions(b, config, hand), config) for b in crossing.HEIGHTS}
     skill = crossing.learn(shown, config, rng("features")).skills[config.blocks]
@@ -54,7 +55,7 @@ def scene(config: Config) -> Any:
 CAMERA = Camera(target=(0.12, -0.01, -0.045), distance=0.42, yaw=68.0, pitch=-22.0, field_of_view=40.0)
 
 
-def stage(world: Any, recording: Recording, config: Config) -> Recording:
+def stage(world: World, recording: Recording, config: Config) -> Recording:
     recording.series["clearance"] = clearance(pen.from_table(recording["arm.tip"]), config.blocks)
     return recording
 
@@ -79,7 +80,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """The worst of the 18 crossings."""
     runs = [values for case, values in metrics.items() if case.startswith(("two_", "three_"))]
     if not runs:

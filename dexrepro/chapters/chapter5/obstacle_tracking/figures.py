@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter5 import crossing, pen
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 from dexrepro.physics.rendering import Camera
 
 FIGURES = {
@@ -37,7 +36,7 @@ FILM = Film(
 )  # fmt: skip
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     from dexrepro.report import style
 
     figures = {}
@@ -53,7 +52,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     return figures
 
 
-def _filmstrip(recordings: Mapping[str, Recording], config: Config) -> Any:
+def _filmstrip(recordings: Recordings, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(2, len(config.film), height=3.2)
@@ -68,7 +67,7 @@ def _filmstrip(recordings: Mapping[str, Recording], config: Config) -> Any:
     return figure
 
 
-def _draw_runs(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> Any:
+def _draw_runs(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, (left, right) = style.subplots(1, 2, height=2.3, width=style.TWO_COLUMNS)
@@ -92,7 +91,7 @@ def _draw_runs(recordings: Mapping[str, Recording], metrics: Mapping[str, Metric
     return figure
 
 
-def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     names = {"clearance": "clearance [cm]", "bound_use": "largest share of the bound", "tip_rms": "tip error RMS [mm]",
              "end_error": "distance from the goal [mm]"}  # fmt: skip
     rows = [

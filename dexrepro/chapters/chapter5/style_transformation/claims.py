@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dexrepro.chapters.chapter5.statements import TARGETS
-from dexrepro.experiment import Claim, Predicate, every, greater, within
+from dexrepro.claims import Claim, Predicate, every, greater, within
 
 STYLES = "style_transformation.default"
 PRINTED_STYLES = "style_transformation.printed_damping"

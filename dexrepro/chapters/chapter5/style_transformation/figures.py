@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
 from dexrepro.report import style
 
 FIGURES = {
@@ -34,7 +33,7 @@ TABLES = {
 }
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "default" not in recordings:
         return {}
     recording = recordings["default"]
@@ -45,7 +44,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     }
 
 
-def tabulate(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     tables = {}
     if "default" in recordings:
         medians = recordings["default"].frames["errors"].groupby(["letter", "m"]).target.median()
@@ -71,7 +70,7 @@ CELL = 5.2  # cm on the sheet, distance of neighbouring shapes of 4 cm
 """The initial letter in the centre, the targets toward the corners."""
 
 
-def demonstrations(recording: Recording, config: Config) -> Any:
+def demonstrations(recording: Recording, config: Config) -> Drawing:
     paths = recording.frames["paths"]
     names = (config.hand.base, *config.hand.targets)
     figure, axes = style.subplots(1, len(names), height=1.9, sharex=True, sharey=True)
@@ -85,7 +84,7 @@ def demonstrations(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def cross(recording: Recording, config: Config) -> Any:
+def cross(recording: Recording, config: Config) -> Drawing:
     figure, axes = style.plt.subplots(
         2, 2, figsize=(style.TWO_COLUMNS, 4.6), gridspec_kw={"width_ratios": (2.3, 1)}, squeeze=False
     )
@@ -134,7 +133,7 @@ def _distances(axes: Any, recording: Recording, config: Config) -> None:
     axes[0].legend(ncols=2)
 
 
-def mixtures(recording: Recording, config: Config) -> Any:
+def mixtures(recording: Recording, config: Config) -> Drawing:
     frame = recording.frames["mixtures"]
     pairs = list(dict.fromkeys(frame.pair))
     shares = sorted(config.interpolation, reverse=True)

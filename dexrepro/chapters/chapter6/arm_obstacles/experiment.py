@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import arms, learning
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans import waypoints
@@ -45,7 +46,7 @@ def _arm() -> Arm:
     return baxter("right")
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     primitive = _learned(config, rng("demonstrations"))
     movement = primitive.rollout(config.step, horizon=config.duration)
     path, reference, projections = _path(config, primitive, movement)
@@ -101,7 +102,7 @@ def _reference(config: Config, movement: Trajectory) -> Reference:
     return differentiable(at, points, movement.time)
 
 
-def _drive(config: Config, world: World, time: NDArray[Any], path: NDArray[Any]) -> Recording:
+def _drive(config: Config, world: World, time: Array, path: Array) -> Recording:
     """Let the arm follow a path (n, 2) [m] at the tool's height, pointing down."""
     arm, model = _arm(), RigidBodyModel(_arm())
     every = round(1 / (config.ik_rate * config.step))
@@ -136,7 +137,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     return metrics
 
 
-def _to_new(path: NDArray[Any], config: Config) -> float:
+def _to_new(path: Array, config: Config) -> float:
     """Smallest distance of the tip's path to the new box in the plane [m]."""
     x, y = config.boxes["new"]
     half = np.array(config.box_size[:2]) / 2

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.arrays import Array
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Metrics, Recording, Recordings
 from dexrepro.physics.rendering import Camera
 
 from .experiment import BOXES, TOP
@@ -39,9 +36,7 @@ FILM = Film(
 )  # fmt: skip
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case, numbers in metrics.items():
         distances = {f"arm to {name} box [cm]": 100 * float(numbers[f"distance_{name}"] or 0) for name in BOXES}
@@ -55,7 +50,7 @@ def tabulate(
     return {"T6.Sc": pd.DataFrame(rows)}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
     for identifier, case in (("6.4", "original"), ("6.5", "constrained")):
         if case in recordings:
@@ -65,7 +60,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     return figures
 
 
-def _draw_scene(original: Recording, constrained: Recording, config: Config) -> Any:
+def _draw_scene(original: Recording, constrained: Recording, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.0)
@@ -86,14 +81,14 @@ def _draw_scene(original: Recording, constrained: Recording, config: Config) -> 
     return figure
 
 
-def _pixels(points: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+def _pixels(points: Array, shape: tuple[int, ...]) -> Array:
     """Where points (n, 2) [m] at the height of the camera's target appear in the picture from above."""
     scale = shape[0] / 2 / np.tan(np.radians(TOP.field_of_view) / 2) / TOP.distance
     offset = (points - np.array(TOP.target[:2])) * scale
     return np.array([shape[1], shape[0]]) / 2 + offset * [1, -1]
 
 
-def _draw_run(run: Recording, numbers: Metrics) -> Any:
+def _draw_run(run: Recording, numbers: Metrics) -> Drawing:
     from dexrepro.report import style
 
     shots = style.trimmed({name: run.images[name] for name in sorted(run.images) if name != "top"})

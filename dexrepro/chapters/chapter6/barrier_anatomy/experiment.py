@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning, plane
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.primitives.barrier import Constraint, gain
@@ -17,11 +17,11 @@ from dexrepro.primitives.constrained import Path, rollout
 RATE = 0.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     lesson = plane.teach(config, rng("demonstrations"))[0]
     primitive, duration = lesson.second, float(lesson.durations[1])
 
-    def largest(step: float, decay: Any, margin: Any, weight: str) -> tuple[NDArray[Any], NDArray[Any]]:
+    def largest(step: float, decay: Any, margin: Any, weight: str) -> tuple[Array, Array]:
         """Largest distance, and whether the run stayed defined, for arrays of gains or margins (runs, 1)."""
         path = _run(config, primitive, duration, step, np.asarray(decay, float), np.asarray(margin, float), weight)
         return np.nanmax(path.distance, axis=0), np.asarray(path.defined.all(axis=0))
@@ -42,7 +42,7 @@ def simulate(config: Config, rng: Any) -> Recording:
 
 
 def _run(
-    config: Config, primitive: Any, duration: float, step: float, decay: NDArray[Any], margin: NDArray[Any], weight: str
+    config: Config, primitive: Any, duration: float, step: float, decay: Array, margin: Array, weight: str
 ) -> Path:
     (movement,) = learning.nominal([primitive], np.array([duration]), round(duration / step))
     skill = learning.skill([primitive], [movement])

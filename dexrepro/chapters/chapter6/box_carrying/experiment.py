@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import arms, bimanual
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.waypoints import minimum_jerk
@@ -43,7 +44,7 @@ def _arm(side: str) -> Arm:
     return baxter(side, palm())
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     movement = bimanual.move(config, rng("measurement"))
     wrists = (movement.original if config.original else movement.joints)[:, 0, :, bimanual.WRIST]
     time, tips, turns, ends = _palm_path(config, movement.time, wrists)
@@ -79,7 +80,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     return run
 
 
-def _palm_path(config: Config, time: NDArray[Any], wrists: NDArray[Any]) -> tuple[NDArray[Any], ...]:
+def _palm_path(config: Config, time: Array, wrists: Array) -> tuple[NDArray[Any], ...]:
     """Time (n,), palm tips (n, 2, 3) [m] and rotations (n, 2, 3, 3) with squeeze, and the box's ends (n, 2, 3) [m].
 
     A ramp from just clear of the box comes first. The person's frame is turned and shifted in front of the robot.

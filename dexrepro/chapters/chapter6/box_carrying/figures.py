@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Film, Recordings
 from dexrepro.physics.rendering import Camera
 
 FIGURES = {
@@ -27,9 +24,7 @@ FILM = Film(
 )  # fmt: skip
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     columns = {
         "carried": "carried",
         "lost_at": "lost after [s]",
@@ -43,7 +38,7 @@ def tabulate(
     return {"T6.Sd": pd.DataFrame(rows)}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"constrained", "original"} <= set(recordings):
         return {}
     from dexrepro.report import style

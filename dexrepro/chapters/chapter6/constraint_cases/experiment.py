@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array, Rng
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.primitives.barrier import (
     Constraint,
@@ -22,7 +22,7 @@ from dexrepro.primitives.barrier import (
 RATE = 200.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     constraint = constraint_of(config)
     frames = {"states": _random_states(constraint, config, rng("states"))}
     z1, z2 = np.array(config.start, float) + config.perturbation, np.zeros(len(config.start))
@@ -63,7 +63,7 @@ def _random_states(constraint: Constraint, config: Config, rng: np.random.Genera
     return pd.DataFrame(frame)
 
 
-def _squares(z1: Any, z2: Any, constraint: Constraint, gains: Gains, coupling: float) -> NDArray[Any]:
+def _squares(z1: Any, z2: Any, constraint: Constraint, gains: Gains, coupling: float) -> Array:
     """dV^c/dt as (6.21) and its counterparts for the other cases have it."""
     square = -constraint.pull(z1) - coupling * z2 / 2
     barrier = gains.position / gains.velocity * constraint.share(z1) * square**2

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 from .experiment import constraint_of
 
@@ -31,9 +28,7 @@ SYMBOLS = {  # constraint, W in alpha_2 = (xdot^c - f1)/g1 - W/(d_z g1), B in k_
 }
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case, (constraint, pull, share) in SYMBOLS.items():
         if case in metrics:
@@ -43,7 +38,7 @@ def tabulate(
     return {"T6.2": pd.DataFrame(rows)}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     from dexrepro.report import style
 
     figure, (inner, outer, right) = style.subplots(1, 3, height=2.7, width_ratios=(1, 1, 1.1))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, every, less
+from dexrepro.claims import Claim, every, less
 
 COUPLED = "coupled_primitives"
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.waypoints import minimum_jerk
+from dexrepro.measures import rms
 from dexrepro.primitives.coupling import Agents, SurfaceFollower, coupled_rollout, steering
 from dexrepro.primitives.dmp import DMP
 from dexrepro.primitives.kernels import phase
@@ -17,7 +18,7 @@ from dexrepro.primitives.kernels import phase
 RATE = 100.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     if config.system == "surface":
         series = _surface(config)
     elif config.system == "obstacle":
@@ -36,17 +37,17 @@ def _reach(config: Config, duration: float, height: Any = 0.0) -> DMP:
     )
 
 
-def _agents(config: Config) -> dict[str, NDArray[Any]]:
+def _agents(config: Config) -> dict[str, Array]:
     """Two agents side by side; the second one is pushed away."""
     a, primitive = config.agents, _reach(config, 1.0)
     s = phase(np.linspace(0, 1, 400), 1.0, config.dmp.gamma)[::-1]
     table = primitive.features.features(s) @ primitive.weights
 
-    def forcing(value: float) -> NDArray[Any]:
+    def forcing(value: float) -> Array:
         f = np.array([np.interp(value, s, column) for column in table.T])
         return np.stack([f, f])
 
-    def push(t: float) -> NDArray[Any]:
+    def push(t: float) -> Array:
         active = a.push_from < t < a.push_until
         return np.array([[0.0, 0.0], [0.0, a.push if active else 0.0]])
 
@@ -58,7 +59,7 @@ def _agents(config: Config) -> dict[str, NDArray[Any]]:
     return {"time": config.step * np.arange(len(paths)), "error": gap, "goal_error": np.full(len(paths), missed)}
 
 
-def _obstacle(config: Config) -> dict[str, NDArray[Any]]:
+def _obstacle(config: Config) -> dict[str, Array]:
     primitive = _reach(config, 1.0)
     movement = primitive.rollout(config.step, horizon=1.0)
     point = np.array([[5.0, 0.1]])
@@ -75,7 +76,7 @@ def _obstacle(config: Config) -> dict[str, NDArray[Any]]:
     }
 
 
-def _surface(config: Config) -> dict[str, NDArray[Any]]:
+def _surface(config: Config) -> dict[str, Array]:
     """A tool learned on a flatter surface presses on a bump; positions in cm."""
     s, set_force = config.surface, config.surface.set_force
 
@@ -98,7 +99,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     error = recording["error"]
     late = error[len(error) // 5 :]
     size = {
-        "surface": float(np.sqrt((late**2).mean())),
+        "surface": rms(late),
         "obstacle": float(error.min()),
     }.get(config.system, float(np.abs(error).max()))
     return {"size": size, "end_error": float(abs(error[-1])), "goal_error": float(recording["goal_error"][0])}

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.waypoints import minimum_jerk
@@ -18,7 +19,7 @@ from dexrepro.primitives.dmp import DMP, Trajectory
 RATE = 100.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     primitive = _reach(config)
     movement = primitive.rollout(config.step, horizon=config.duration)
     runs = len(config.offsets)
@@ -53,7 +54,7 @@ def _reach(config: Config) -> DMP:
     return learning.learn(time, path + config.perturbation, config.dmp)
 
 
-def _obstacles(config: Config, time: NDArray[Any]) -> Reference:
+def _obstacles(config: Config, time: Array) -> Reference:
     """Centres of the disks: amid the reach plus an offset, crossing it at mid-time with their speeds."""
     offsets, speeds = np.array(config.offsets, float), np.array(config.speeds, float)
     position = np.zeros((len(time), len(offsets), 2))
@@ -83,7 +84,7 @@ def _detour(config: Config, movement: Trajectory, centre: Reference) -> Referenc
     return Reference(*(np.stack(part, axis=1) for part in parts))
 
 
-def _row(path: Path, distance: NDArray[Any], goal: NDArray[Any], run: int) -> dict[str, float]:
+def _row(path: Path, distance: Array, goal: Array, run: int) -> dict[str, float]:
     last = int(np.flatnonzero(path.defined[:, run])[-1])
     return {
         "min_distance": float(np.nanmin(distance)),

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 FIGURES = {
     "6.C": Figure(
@@ -23,9 +20,7 @@ FIGURES = {
 TABLES = {"T6.C": "Laws that stay outside of a still and of a moving disk"}
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case, numbers in metrics.items():
         c = config.cases[case]
@@ -42,7 +37,7 @@ def tabulate(
     return {"T6.C": pd.DataFrame(rows)}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     still = {
         "still_printed": "printed",
         "still_feedforward": "book",

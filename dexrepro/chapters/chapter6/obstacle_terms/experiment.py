@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,9 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter6 import learning, plane
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.primitives.constrained import LAWS, Reference, Skill, rollout
 from dexrepro.primitives.coupling import Term, coupled_rollout, dynamic_potential, steering
@@ -21,7 +22,7 @@ RATE = 0.0
 Terms = Callable[[Polygon, NDArray[Any], NDArray[Any]], Term]
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     old, block = plane.obstacles(config)
     lesson = plane.teach(config, rng("demonstrations"))[0]
     movement = lesson.second.rollout(lesson.durations[1] / config.steps, horizon=lesson.durations[1])
@@ -200,7 +201,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     return metrics
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Response of the steering term to the heading: gamma phi exp(-beta phi), per unit of speed."""
     phi = np.linspace(1e-4, np.pi, 20000)
     response = config.strength * phi * np.exp(-config.decay * phi)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter6 import plane
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 FIGURES = {
     "6.D": Figure(
@@ -25,9 +22,7 @@ TABLES = {
 }
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows, bars = [], []
     for case in recordings:
         numbers = metrics[case]
@@ -51,7 +46,7 @@ def tabulate(
     return {"T6.D": pd.DataFrame(rows), "T6.E": pd.DataFrame(bars)}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     lines = {
         "centroid": "extra1",
         "closest": "extra2",

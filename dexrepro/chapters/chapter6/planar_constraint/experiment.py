@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning, plane
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.primitives.constrained import Path, Reference
 from dexrepro.primitives.obstacles import clearance
 
 RATE = 100.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     lessons = plane.teach(config, rng("demonstrations"))
     durations = np.array([lesson.durations[1] for lesson in lessons])
     primitives = [lesson.second for lesson in lessons]
@@ -46,7 +45,7 @@ def simulate(config: Config, rng: Any) -> Recording:
     return Recording(series=series, frames=frames, steps=steps, simulated=float(durations[0]))
 
 
-def _start(primitives: list[Any]) -> NDArray[Any]:
+def _start(primitives: list[Any]) -> Array:
     return np.stack([p.time_constant * np.broadcast_to(p.velocity, p.goal.shape) for p in primitives])
 
 
@@ -101,7 +100,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Share by which the barrier (weight 1) changes the largest distance with tau = duration."""
     if not {"feedforward", "no_barrier"} <= set(metrics):
         return {}

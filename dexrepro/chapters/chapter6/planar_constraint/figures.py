@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter6 import plane
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recording, Recordings
 
 FIGURES = {
     "6.2d": Figure(
@@ -26,9 +25,7 @@ TABLES = {
 LINES = {"consistent": "extra1", "printed": "printed", "feedforward": "book", "lagged": "extra2", "filter": "rival"}
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     columns = {
         "e_max": "largest distance [cm]",
         "violated_groups": f"groups that violate, of {config.demonstrations.groups}",
@@ -49,7 +46,7 @@ def tabulate(
     return {"T6.A": table[plain], "T6.S": table[~plain]}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     from dexrepro.report import style
 
     rows = {

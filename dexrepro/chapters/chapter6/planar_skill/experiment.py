@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter6 import plane
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.primitives.obstacles import Polygon, clearance
@@ -15,7 +16,7 @@ from dexrepro.primitives.reference_path import lagrange
 RATE = 0.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     lessons = plane.teach(config, rng("demonstrations"))
     rows, frames = [], {}
     for group, lesson in enumerate(lessons):

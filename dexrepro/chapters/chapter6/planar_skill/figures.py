@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
 
 from dexrepro.chapters.chapter6 import plane
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 from .experiment import lies_inside
 
@@ -35,9 +34,7 @@ FIGURES = {
 TABLES = {"T6.Sa": "Variants of the map, of the segmentation and of the intervals, and what they change"}
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     shown = {
         "segmentation_error_max": "largest cut error [s]",
         "clearance_new_max": "learned path to new block, largest [cm]",
@@ -53,7 +50,7 @@ def tabulate(
     return {"T6.Sa": pd.DataFrame(rows)}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "book" not in recordings:
         return {}
     from dexrepro.report import style

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, Reference, every, greater, less
+from dexrepro.claims import Claim, Reference, every, greater, less
 
 HANDS = "skeleton_constraints"
 PROJECTION = "our projection puts a step beyond the barrier back; only the consistent law needs none"

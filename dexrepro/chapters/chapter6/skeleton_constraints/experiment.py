@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter6 import bimanual
 from dexrepro.experiment import Config, Metrics, Recording
 
@@ -15,7 +16,7 @@ RATE = 25.0
 SIDES = ("left", "right")
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     movement = bimanual.move(config, rng("measurement"))
     n = len(movement.time)
     spread, summary = _spread(movement)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.chapters.chapter6 import bimanual
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Metrics, Recording, Recordings
 
 from .experiment import SIDES
 
@@ -52,9 +51,7 @@ TABLES = {
 }
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case, numbers in metrics.items():
         shown = ("length_error", "hands_error")
@@ -78,7 +75,7 @@ def tabulate(
     return tables
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "feedforward" not in recordings:
         return {}
     run, numbers = recordings["feedforward"], metrics["feedforward"]
@@ -93,7 +90,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     }
 
 
-def _joints(run: Recording, channel: str) -> NDArray[Any]:
+def _joints(run: Recording, channel: str) -> Array:
     return run[channel].reshape(-1, 2, 3, 3)
 
 
@@ -104,11 +101,11 @@ def _stick(axes: Any, joints: Any, colour: str, **options: Any) -> None:
     axes.plot(*joints[:, 0][:, [0, 2]].T, color=colour, linewidth=0.6, **options)
 
 
-def _instants(run: Recording, settings: Config) -> NDArray[Any]:
+def _instants(run: Recording, settings: Config) -> Array:
     return np.searchsorted(run.time, np.array(settings.shown_instants) * run.time[-1] * 0.999)
 
 
-def _draw_person(run: Recording, settings: Config) -> Any:
+def _draw_person(run: Recording, settings: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(1, 6, height=1.4, sharex=True, sharey=True)
@@ -132,7 +129,7 @@ def _draw_person(run: Recording, settings: Config) -> Any:
     return figure
 
 
-def _draw_spread(run: Recording, numbers: Metrics) -> Any:
+def _draw_spread(run: Recording, numbers: Metrics) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(1, 4, height=2.4, gridspec_kw={"width_ratios": [1, 1, 1, 1]})
@@ -158,7 +155,7 @@ def _draw_spread(run: Recording, numbers: Metrics) -> Any:
     return figure
 
 
-def _draw_stages(run: Recording) -> Any:
+def _draw_stages(run: Recording) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(height=1.1)
@@ -177,7 +174,7 @@ def _draw_stages(run: Recording) -> Any:
     return figure
 
 
-def _draw_paths(run: Recording, settings: Config) -> Any:
+def _draw_paths(run: Recording, settings: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, panels = style.subplots(1, 2, height=2.8, sharey=True)
@@ -207,7 +204,7 @@ def _draw_paths(run: Recording, settings: Config) -> Any:
     return figure
 
 
-def _draw_lengths(run: Recording, numbers: Metrics, settings: Config) -> Any:
+def _draw_lengths(run: Recording, numbers: Metrics, settings: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, panels = style.subplots(1, 2, height=2.4, sharey=True)
@@ -230,7 +227,7 @@ def _draw_lengths(run: Recording, numbers: Metrics, settings: Config) -> Any:
     return figure
 
 
-def _draw_hands(run: Recording, numbers: Metrics, settings: Config) -> Any:
+def _draw_hands(run: Recording, numbers: Metrics, settings: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.3)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, Predicate, every, greater, less, ordered
+from dexrepro.claims import Claim, Predicate, every, greater, less, ordered
 
 PERSON = "the synthetic person reacts this way"
 FUZZY = "fuzzy_generalisation"

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import skills
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms
 
 RATE = 50.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     ordinary, reactions = skills.demonstrate(config)
     learned = skills.Skills(config, ordinary, reactions)
     task = skills.NewTask(config, learned)

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.chapters.chapter7 import skills
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recording, Recordings
 
 FIGURES = {
     "7.9": Figure(
@@ -23,7 +23,7 @@ FIGURES = {
 TABLES = {"T7.9": "Clearance of the generalised reactions in the new task", "T7.S": "Choices that turn a verdict"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "main" not in recordings:
         return {}
     from dexrepro.chapters.chapter7 import pictures
@@ -52,7 +52,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
         pictures.ends(panel, task)
     pictures.profile(sides[0, 1], obstacle, task)
     draw_clearance(sides[1, 0], recording, case, obstacle)
-    worst = metrics["main"]
+    worst: Mapping[str, Any] = metrics["main"]
     style.panel(plans[0, 0], "a", f"ordinary skill, {10 * worst['end_error']:.1f} mm from the new goal")
     style.panel(plans[0, 1], "b", f"three directions, {worst['clearance_three']:.1f} cm clear")
     style.panel(plans[1, 0], "c", f"left-forward ({case.direction:g}), {worst['clearance_chosen']:.1f} cm clear")
@@ -63,7 +63,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     return {"7.9": figure}
 
 
-def draw_ordinary(plan: Any, side: Any, recordings: Any, case: Config, obstacle: Any) -> None:
+def draw_ordinary(plan: Any, side: Any, recordings: Recordings, case: Config, obstacle: Any) -> None:
     from dexrepro.chapters.chapter7 import pictures
     from dexrepro.report import style
 
@@ -113,9 +113,7 @@ CLEAR = {"clearance_three": "three directions pass (C7.19)", "clearance_chosen":
          "clearance_between": "every direction in between passes (C7.21b)"}  # fmt: skip
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> dict[str, pd.DataFrame]:
     columns = ("left", "forward", "right", "chosen", "between")
     clearances = [
         {"case": case, "distance sets": config.cases[case].task.scope}

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import desk
 from dexrepro.control.time_delay_impedance import sampled_spectral_radius
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.robots.pen_arm import gripper, pen_arm
 
@@ -17,7 +15,7 @@ RATE = 1000.0
 CHATTER = 1.0  # N m of torque travel a joint; smooth runs have 0.15
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     _, reference = desk.planned(config)
     with desk.build(config, reference.tip[0]) as world:
         recording = desk.run(config, reference, world, events=desk.payload_events(world, config))
@@ -69,7 +67,7 @@ def lyapunov_metrics(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Largest stable and smallest unstable gain k_s, measured and predicted."""
     rows = gains(metrics, config)
     result: Metrics = {}
@@ -86,5 +84,5 @@ def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
     return result
 
 
-def gains(metrics: Mapping[str, Metrics], config: Config) -> list[tuple[float, Metrics]]:
+def gains(metrics: AllMetrics, config: Config) -> list[tuple[float, Metrics]]:
     return [(config.cases[case].stiffness_gain, values) for case, values in metrics.items() if case.startswith("gain")]

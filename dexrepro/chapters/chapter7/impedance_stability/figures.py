@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 from .experiment import gains
 
@@ -25,7 +25,7 @@ FIGURES = {
 TABLES = {"T7.B": "Stability against gain, period and model, predicted and measured"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     from dexrepro.report import style
 
     rows = gains(metrics, config)
@@ -65,9 +65,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     return {"7.B": figure}
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> dict[str, pd.DataFrame]:
     rows = [
         {
             "case": case,

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import desk
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.physics.elements import Push
@@ -28,7 +29,7 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
     return recording
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     _, reference = desk.planned(config)
     with desk.build(config, reference.tip[0]) as world:
         if config.jump_force:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter7 import desk, skills
-from dexrepro.experiment import Config, Figure, Film, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 
 from .experiment import PICTURES
 
@@ -34,7 +34,7 @@ FILM = Film(
 )  # fmt: skip
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
     if "muscle" in recordings:
         if recordings["muscle"].images:
@@ -43,7 +43,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     return figures
 
 
-def draw_pictures(recording: Recording) -> Any:
+def draw_pictures(recording: Recording) -> Drawing:
     from dexrepro.report import style
 
     images = style.trimmed(recording.images)
@@ -57,7 +57,7 @@ def draw_pictures(recording: Recording) -> Any:
     return figure
 
 
-def draw_tracking(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> Any:
+def draw_tracking(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> Drawing:
     from dexrepro.chapters.chapter7 import pictures as views
     from dexrepro.report import style
 
@@ -98,9 +98,7 @@ def draw_tracking(recordings: Mapping[str, Recording], metrics: Mapping[str, Any
     return figure
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case, values in metrics.items():
         law = config.cases[case].law

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import desk
-from dexrepro.chapters.measures import rms
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.reaching import Obstacle
+from dexrepro.measures import rms
 from dexrepro.physics.elements import Push
 from dexrepro.robots.pen_arm import pen_arm_tip
 
 RATE = 200.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     task, reference = desk.planned(config)
     with desk.build(config, reference.tip[0], contacts=True) as world:
         stack = Obstacle(task.obstacle.position, task.obstacle.height + config.rise, task.obstacle.side)
@@ -76,7 +74,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Relative spread of the peak contact force over the impedances, with and without estimation."""
     peaks = {
         "estimated": [m["contact_peak"] or 0.0 for case, m in metrics.items() if not case.endswith("_plain")],

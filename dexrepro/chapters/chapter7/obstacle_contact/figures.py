@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 FIGURES = {
     "7.D": Figure(
@@ -25,7 +24,7 @@ TABLES = {"T7.D": "Contact and pushes under constant and variable impedance"}
 NAMES = {"muscle": "muscle", "low": "constant, smallest", "mean": "constant, mean", "high": "constant, largest"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"muscle", "low", "muscle_plain", "low_plain"} <= set(recordings):
         return {}
     from dexrepro.report import style
@@ -66,9 +65,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     return {"7.D": figure}
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = [
         {
             "impedance": NAMES.get(case.removesuffix("_plain"), case),

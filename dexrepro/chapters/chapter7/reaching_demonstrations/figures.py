@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter7 import skills
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
 
 from .experiment import paths_of, traces_of
 
@@ -41,7 +41,7 @@ FIGURES = {
 TABLES = {"T7.1": "Factors and experimental conditions, completed, with what the demonstrations do"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "corrected" not in recordings:
         return {}
     config = config.cases.corrected
@@ -69,7 +69,7 @@ def draw_pictures(images: Mapping[str, Any]) -> dict[str, Any]:
     return {"7.4": platform, "7.5": figure}
 
 
-def draw_paths(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> Any:
+def draw_paths(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> Drawing:
     from dexrepro.chapters.chapter7 import pictures
     from dexrepro.report import style
 
@@ -110,7 +110,7 @@ def draw_paths(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], 
     return figure
 
 
-def draw_stiffness(recording: Recording, config: Config) -> Any:
+def draw_stiffness(recording: Recording, config: Config) -> Drawing:
     from dexrepro.chapters.chapter7 import pictures
     from dexrepro.report import style
 
@@ -137,9 +137,7 @@ def draw_stiffness(recording: Recording, config: Config) -> Any:
     return figure
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     if "corrected" not in recordings:
         return {}
     recording, config = recordings["corrected"], config.cases.corrected

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, Predicate, every, greater, less, ordered
+from dexrepro.claims import Claim, Predicate, every, greater, less, ordered
 
 LEARNING = "reactive_learning"
 

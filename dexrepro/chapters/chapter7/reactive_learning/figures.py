@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.chapters.chapter7 import skills
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 from .experiment import shown
 
@@ -24,13 +24,14 @@ FIGURES = {
 TABLES = {"T7.2": "Learning the reactions to the low, close obstacle"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "frozen" not in recordings:
         return {}
     from dexrepro.chapters.chapter7 import pictures
     from dexrepro.report import style
 
     recording, case = recordings["frozen"], config.cases.frozen
+    frozen: Mapping[str, Any] = metrics["frozen"]
     task, condition = skills.reach(case), skills.conditions(case)[shown(case)[0]]
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.6))
     grid = figure.add_gridspec(2, 6, height_ratios=[1, 1.15])
@@ -49,7 +50,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
         pictures.footprint(panel, condition.obstacle)
         pictures.ends(panel, task)
         pictures.board(panel)
-        error = 10 * metrics["frozen"][f"rmse{number}"]
+        error = 10 * frozen[f"rmse{number}"]
         plural = "s" if number > 1 else ""
         style.panel(
             panel,
@@ -64,9 +65,9 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
             label = {"frozen": "old weights kept (7.17)", "refit": "all weights free"}[name]
             curve.plot(learning.median().index, 10 * learning.median(), label=label, marker=".", **style.LINES[kind])
             style.band(curve, learning.median().index, 10 * learning.min(), 10 * learning.max())
-    curve.axhline(10 * metrics["frozen"]["spread"], **style.LINES["reference"])
-    curve.annotate("spread of repetitions", (4.5, 10 * metrics["frozen"]["spread"]), fontsize=6.5, va="bottom")
-    curve.axhline(10 * metrics["frozen"]["plain_refit"], label="plain primitive fitted again", **style.LINES["plain"])
+    curve.axhline(10 * frozen["spread"], **style.LINES["reference"])
+    curve.annotate("spread of repetitions", (4.5, 10 * frozen["spread"]), fontsize=6.5, va="bottom")
+    curve.axhline(10 * frozen["plain_refit"], label="plain primitive fitted again", **style.LINES["plain"])
     curve.set(yscale="log", xlabel="Groups of enhancement nodes [-]", ylabel="RMS error [mm]")
     curve.legend()
     style.panel(curve, "e", "error of ten draws of the nodes")
@@ -74,9 +75,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     return {"7.8": figure}
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case, values in metrics.items():
         groups = [g for g in (1, 2, 5, 8) if f"rmse{g}" in values]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, Predicate, every, less
+from dexrepro.claims import Claim, Predicate, every, less
 
 STYLES = "style_separation"
 

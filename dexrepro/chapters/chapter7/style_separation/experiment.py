@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms_distance
 from dexrepro.primitives.reactive import Styles
 
 RATE = 50.0
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     ordinary, reactions = skills.demonstrate(config)
     learned = skills.Skills(config, ordinary, reactions)
     chosen = [i for i, c in enumerate(skills.conditions(config)) if c.labels[:2] in subset(config)]
@@ -25,7 +25,7 @@ def simulate(config: Config, rng: Any) -> Recording:
         styles = Styles.separate(targets, rank, config.style.shared)
         weights = styles.fit(learned.features, learned.primitive.phases, config.enhancement.ridge)
         paths = learned.perform(change @ weights)
-        error = skills.rms(paths, learned.demonstrated[chosen])
+        error = rms_distance(paths, learned.demonstrated[chosen])
         clearance = [
             float(skills.conditions(config)[i].obstacle.clearance(path, config.scene.tool_radius))
             for i, path in zip(chosen, paths)

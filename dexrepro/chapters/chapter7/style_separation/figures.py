@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 FIGURES = {
     "7.A": Figure(
@@ -21,11 +21,12 @@ FIGURES = {
 TABLES = {"T7.A": "Reactions represented by a common basis and style parameters"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"per_coordinate", "shared"} <= set(recordings):
         return {}
     from dexrepro.report import style
 
+    numbers: Mapping[str, Any] = metrics["per_coordinate"]
     figure, axes = style.subplots(1, 3, height=2.6)
     pairs = {"per_coordinate": ("book", axes[0]), "non_separable": ("extra1", axes[0]), "shared": ("book", axes[1])}
     for name, (line, panel) in pairs.items():
@@ -41,9 +42,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
                     panel.annotate(f"{count:.0f}", (rank, 10 * worst), xytext=(0, 5),
                                    textcoords="offset points", fontsize=7, ha="center")  # fmt: skip
     for letter, panel, text in zip("ab", axes, ("a set of each coordinate", "one set for all coordinates")):
-        panel.axhline(
-            10 * metrics["per_coordinate"]["spread"], label="spread of repetitions", **style.LINES["reference"]
-        )
+        panel.axhline(10 * numbers["spread"], label="spread of repetitions", **style.LINES["reference"])
         panel.set(
             xlabel="Style parameters R [-]",
             ylabel="RMS error [mm]",
@@ -65,9 +64,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     return {"7.A": figure}
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> dict[str, pd.DataFrame]:
     rows = [
         {
             "reactions": case,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from dexrepro.experiment import Config, Figure, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 
 from .experiment import METHODS
 
@@ -24,12 +24,13 @@ FIGURES = {
 TABLES = {"T7.3": "Reactions to conditions that were never shown"}
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "main" not in recordings:
         return {}
     from dexrepro.report import style
 
-    left_out, values = recordings["main"].frames["left_out"], metrics["main"]
+    left_out = recordings["main"].frames["left_out"]
+    values: Mapping[str, Any] = metrics["main"]
     figure, (one, many) = style.subplots(1, 2, height=2.9)
     colours = (style.BOOK, style.RIVAL, style.EXTRA[0], style.EXTRA[2], style.PLAIN)
     labels = [
@@ -61,9 +62,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config
     return {"7.C": figure}
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Any], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> dict[str, pd.DataFrame]:
     rows = []
     for case, values in metrics.items():
         for method, text in METHODS.items():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.experiment import Claim, Predicate, Reference, every, less, ordered
+from dexrepro.claims import Claim, Predicate, Reference, every, less, ordered
 
 CIRCLE = "circle_tracking"
 

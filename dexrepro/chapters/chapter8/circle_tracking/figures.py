@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
 
 FIGURES = {
     "8.4": Figure(
@@ -50,7 +50,7 @@ TABLES = {
 THRESHOLDS = ("broad", "broad_2", "broad_3")
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
         "8.4": (_draw_centres, THRESHOLDS),
         "8.6": (_draw_tracking, ("broad", "fuzzy", "broad_unit", "fuzzy_unit")),
@@ -68,7 +68,7 @@ def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], co
     }
 
 
-def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(4, 2, height=7.2, sharex="row")
@@ -105,7 +105,7 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_nodes(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_nodes(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, row = style.subplots(1, 3, height=2.4, sharey=True)
@@ -130,7 +130,7 @@ def _draw_nodes(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_friction(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     lines = {
@@ -169,7 +169,7 @@ def _draw_friction(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_centres(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_centres(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, row = style.subplots(1, 3, height=2.9, sharex=True, sharey=True)
@@ -188,7 +188,7 @@ def _draw_centres(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_gains(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_gains(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     marks = {
@@ -254,9 +254,7 @@ VARIANTS = (
 )
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     columns = {"max_x": "largest e_x [mm]", "max_y": "largest e_y [mm]", "bound_used": "share of the bound used",
                "rms_x": "rms e_x [mm]", "rms_y": "rms e_y [mm]", "early_x": "rms e_x, early [mm]",
                "early_y": "rms e_y, early [mm]", "nodes": "nodes", "features": "features",

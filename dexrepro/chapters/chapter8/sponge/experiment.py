@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter8 import learning_study
 from dexrepro.chapters.chapter8.task import TaskController, beyond
 from dexrepro.control.impedance_learning import LearnedGain
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
 from dexrepro.control.task_space import Motion
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.networks import GrowingGaussians
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.model import RigidBodyModel
@@ -84,7 +85,7 @@ class RedundantController(TaskController):
         return np.minimum(np.maximum(torque, -self.limits), self.limits)
 
 
-def simulate(config: Config, rng: Callable[[str], np.random.Generator]) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     interaction = config.interaction
     controller = RedundantController(
         config.law, approach(config.path), RigidBodyModel(baxter("right")), interaction, axis=2,
@@ -178,7 +179,7 @@ def _joint_counts(recording: Recording, config: Config) -> Metrics:
     return result
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Stiffness [N/m] below which the learned law compresses the sponge more than the wrong-model regulator."""
     if "lqr" not in metrics:
         return {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from dexrepro.chapters.chapter8 import learning_study
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
-from dexrepro.experiment import Config, Figure, Film, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 
 from .experiment import VIEW
 
@@ -58,7 +58,7 @@ LINES = {
 }
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
         "8.12": (_draw_pictures, ("learned",)),
         "8.13": (_draw_tracking, tuple(LINES)),
@@ -84,7 +84,7 @@ def _phases(axes: Any, run: Recording, names: bool = True) -> None:
             style.phase(axes, inside[0], inside[-1], word, colour)
 
 
-def _draw_pictures(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     images = style.trimmed(recordings["learned"].images)
@@ -98,7 +98,7 @@ def _draw_pictures(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(2, 2, height=4.8)
@@ -142,7 +142,7 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_gain(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     learned, lqr = recordings["learned"], recordings["lqr"]
@@ -161,7 +161,7 @@ def _draw_gain(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_stiffness(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_stiffness(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     cost = InteractionCost(config.cost.tracking, config.cost.effort, config.cost.output)
@@ -208,9 +208,7 @@ VARIANTS = (
 )  # fmt: skip
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     columns = {"final_compression": "final compression [mm]", "final_force": "final force [N]",
                "peak_compression": "peak compression [mm]", "peak_force": "peak force [N]",
                "max_error_x": "largest z_1x [mm]", "max_error_y": "largest z_1y [mm]",

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter8 import learning_study
 from dexrepro.chapters.chapter8.task import TaskController, beyond, circle, two_link
 from dexrepro.control.impedance_learning import TRANSFERRING, InteractionLaw, LearnedGain
 from dexrepro.control.interaction_optimum import InteractionModel, steady_cost, steady_fraction
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
@@ -37,7 +37,7 @@ def scene(config: Config) -> World:
     return world
 
 
-def simulate(config: Config, rng: Callable[[str], np.random.Generator]) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     model = RigidBodyModel(two_link(config.arm), (0.0, -config.gravity, 0.0))
     interaction: InteractionLaw = config.interaction
     controller = TaskController(config.law, circle(config.path), model, interaction, axis=0)
@@ -176,7 +176,7 @@ def _settled(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def summarise(metrics: Mapping[str, Metrics], config: Config) -> Metrics:
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Largest relative error of the learned gain over all objects."""
     errors = [
         error

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from dexrepro.chapters.chapter8 import learning_study
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING, soft_transfer
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain
-from dexrepro.experiment import Config, Figure, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
 
 FIGURES = {
     "8.2": Figure(
@@ -60,7 +60,7 @@ METHODS = {
 }
 
 
-def draw(recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config) -> dict[str, Any]:
+def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
         "8.2": (_draw_transfer, ("soft",)),
         "8.9": (_draw_scene, ("soft",)),
@@ -91,7 +91,7 @@ def _phases(axes: Any, run: Recording, names: bool = True) -> None:
             style.phase(axes, inside[0], inside[-1], word, colour)
 
 
-def _draw_transfer(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_transfer(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     initial = np.array(config.interaction.gain.initial, float)
@@ -115,7 +115,7 @@ def _draw_transfer(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_scene(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_scene(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     run = recordings["soft"]
@@ -139,7 +139,7 @@ def _draw_scene(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_contact(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_contact(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, grid = style.subplots(2, 2, height=4.8)
@@ -176,7 +176,7 @@ def _draw_contact(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_gain(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     soft, lqr, steps = recordings["soft"], recordings["lqr"], recordings["soft"].frames["iterates"]
@@ -207,7 +207,7 @@ def _draw_gain(recordings: Any, metrics: Any, config: Config) -> Any:
     return figure
 
 
-def _draw_objects(recordings: Any, metrics: Any, config: Config) -> Any:
+def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
     cases = [case for case in recordings if case == "soft" or case.startswith("object")]
@@ -260,9 +260,7 @@ VARIANTS = (
 )
 
 
-def tabulate(
-    recordings: Mapping[str, Recording], metrics: Mapping[str, Metrics], config: Config
-) -> dict[str, pd.DataFrame]:
+def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     columns = {"bound_used": "share of the bound used", "max_error_x": "largest z_1x [mm]",
                "max_error_y": "largest z_1y [mm]", "force_jump": "force jump [N]", "force_rate": "force rate [N/s]",
                "reference_speed": "reference speed [m/s]", "oscillation": "oscillation [mm]",

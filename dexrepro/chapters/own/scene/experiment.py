@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dexrepro.chapters.measures import rms
+from dexrepro.arrays import Rng
 from dexrepro.chapters.own.drivers import driver
 from dexrepro.chapters.own.paths import Path, leader_path
 from dexrepro.config import InputError
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms
 from dexrepro.physics.elements import Elastic, Ends
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import RigidBody
@@ -103,7 +104,7 @@ class _Carried:
         return {}
 
 
-def simulate(config: Config, rng: Any) -> Recording:
+def simulate(config: Config, rng: Rng) -> Recording:
     path, offset = leader_path(config), np.array(config.offset, dtype=float)
     with scene(config) as world:
         controller = driver(config.law, config, path, np.array(world.arms["arm"].q))

@@ -1,4 +1,4 @@
-from dexrepro.experiment import Claim, Reference, less, within
+from dexrepro.claims import Claim, Reference, less, within
 
 CLAIMS = (
     Claim("C90.01", "90.10", "the fast one decays more", less("decay.fast.final", "decay.plain.final")),

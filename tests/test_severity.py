@@ -1,0 +1,81 @@
+"""Every claim of the book is severely tested: it has been seen to fail, or says why it cannot."""
+
+from __future__ import annotations
+
+import pytest
+
+from dexrepro import baselines, chapters, study
+from dexrepro.claims import BY_CONSTRUCTION, NOT_EVALUATED, Claim, less, robustness
+
+TESTED: tuple[str, ...] = ()
+"""Chapters whose claims all have their control, or the reason why none can exist."""
+
+
+def stored_metrics(number: str) -> dict[str, float | None]:
+    groups = baselines.read(number)["metrics"].values()
+    return {name: entry["value"] for group in groups for name, entry in group.items()}
+
+
+@pytest.mark.parametrize("number", TESTED)
+def test_every_claim_of_the_book_has_a_control_or_the_reason_why_none_can_exist(number: str) -> None:
+    claims = [claim for claim in chapters.load(number).claims if claim.source == "book" and claim.predicate]
+    assert not [claim.id for claim in claims if not (claim.control or claim.no_control or claim.by_construction)]
+
+
+@pytest.mark.parametrize("number", TESTED)
+def test_every_predicate_has_been_seen_to_fail(number: str) -> None:
+    """In a stored control, printed form, reading or study sample; those that never did say why in ``no_control``."""
+    metrics = stored_metrics(number)
+    sampled = {
+        key: entry["quantiles"][0]
+        for item in study.stored(baselines.baseline_dir())
+        for key, entry in item["claims"].items()
+    }
+    never = []
+    for claim in chapters.load(number).claims:
+        if claim.predicate is None or claim.source != "book" or claim.by_construction:
+            continue
+        found = claim.evaluate(metrics)
+        margins = [found.margin, found.control_margin, found.printed_margin, *found.readings.values()]
+        if not any(margin is not None and margin <= 0 for margin in [*margins, sampled.get(claim.id)]):
+            never.append(claim)
+    assert not [claim.id for claim in never if not claim.no_control]
+
+
+@pytest.mark.parametrize("number", chapters.numbers())
+def test_stored_verdicts_follow_from_stored_metrics(number: str) -> None:
+    stored, metrics = baselines.read(number)["claims"], stored_metrics(number)
+    found = {claim.id: claim.evaluate(metrics).verdict for claim in chapters.load(number).claims if claim.predicate}
+    assert {key: verdict for key, verdict in found.items() if verdict != NOT_EVALUATED and key in stored} == {
+        key: verdict for key, verdict in stored.items() if found.get(key, NOT_EVALUATED) != NOT_EVALUATED
+    }
+
+
+def test_verdicts_of_every_kind() -> None:
+    def verdict(**values: object) -> str:
+        claim = Claim("C", "1", "a falls", less("e.a.x", 1.0), **values)
+        return claim.evaluate({"e.a.x": 0.5, "e.b.x": 2.0, "e.c.x": 0.7, "e.d.x": None}).verdict
+
+    holds, fails, undefined = less("e.c.x", 1.0), less("e.b.x", 1.0), less("e.d.x", 1.0)
+    assert verdict() == verdict(control=fails) == verdict(control=holds) == verdict(printed=holds) == "reproduced"
+    assert verdict(printed=fails) == verdict(printed=undefined) == "after correction"
+    assert verdict(control=holds, credits="the term") == "not attributed"
+    assert verdict(control=fails, credits="the term") == "reproduced"
+    assert verdict(readings={"another window": fails}) == "reading-dependent"
+    assert verdict(by_construction="the generator does it") == BY_CONSTRUCTION
+    assert Claim("C", "1", "a falls", fails).evaluate({"e.b.x": 2.0}).verdict == "not reproduced"
+    assert Claim("C", "1", "a falls", fails).evaluate({"e.b.x": None}).verdict == "not reproduced"
+    assert Claim("C", "1", "a falls", fails).evaluate({}).verdict == NOT_EVALUATED
+
+
+def test_the_numbers_of_a_note_come_from_the_run() -> None:
+    claim = Claim("C", "1", "a falls", less("e.a.x", 1.0), note="It is {e.a.x:.1f} mm, not {e.a.gone}.")
+    assert claim.evaluate({"e.a.x": 0.52}).note == "It is 0.5 mm, not ?."
+
+
+def test_what_a_study_shows() -> None:
+    assert robustness(40, 40) == "robust"
+    assert robustness(16, 16) == "open"
+    assert robustness(8, 16) == "fragile"
+    assert robustness(90, 100) == "open"
+    assert robustness(0, 0) == ""
