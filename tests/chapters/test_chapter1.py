@@ -5,6 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from dexrepro.case import generator, live
 from dexrepro.chapters.chapter1.dartboard import experiment as dartboard
 from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.force_tracking import experiment as force_tracking
@@ -21,7 +22,6 @@ from dexrepro.physics.soft_object import Cushion
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.inverse_kinematics import nearest
-from dexrepro.runner import generator, live
 
 
 @cache

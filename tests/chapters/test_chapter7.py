@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dexrepro.case import live
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.chapters.chapter7.fuzzy_generalisation import experiment as fuzzy_generalisation
 from dexrepro.chapters.chapter7.impedance_stability import experiment as impedance_stability
@@ -18,7 +19,6 @@ from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
 from dexrepro.measures import rms_distance
 from dexrepro.robots.pen_arm import pen_arm_tip
-from dexrepro.runner import live
 
 
 @pytest.fixture(scope="module")
