@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.config import InputError
 from dexrepro.control.computed_torque import ComputedTorque
 from dexrepro.control.contract import KINDS, Command, Measured, build
@@ -17,8 +17,6 @@ from dexrepro.experiment import Config
 from dexrepro.physics.drive import EndPointDrive, HoldingDrive, JointDrive, Posture, limited
 from dexrepro.physics.plant import Sense
 from dexrepro.robots.inverse_kinematics import InverseKinematics
-
-Array = NDArray[np.float64]
 
 
 class Joints:
