@@ -74,6 +74,11 @@ class Baseline:
         return found
 
 
+def stored(chapter: str) -> dict[str, Baseline]:
+    """The baseline of every experiment of a chapter, by its name."""
+    return {item.name: Baseline.of(chapter, item.name) for item in chapters.load(chapter).experiments}
+
+
 def _check_entry(name: str, entry: Mapping[str, Any]) -> None:
     value, tolerances = entry["value"], (entry["rtol"], entry["atol"])
     if value is not None and not isinstance(value, int | float):
