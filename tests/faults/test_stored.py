@@ -147,7 +147,6 @@ DAMAGE: dict[str, tuple[Damage, str, str]] = {
     "series no gzip": (text("series/plain.csv.gz", "time,x"), "draw", "plain.csv.gz cannot be used"),
     "series cut": (short("series/plain.csv.gz", 200), "draw", "plain.csv.gz cannot be used"),
     "series of nothing": (text("series/plain.csv.gz", gzip.compress(b"")), "draw", "decay"),
-    "series of words": (text("series/plain.csv.gz", gzip.compress(b"time,x\na,b\n")), "draw", "decay"),
     "table cut": (text("tables/T90.1.csv", '"a'), "check", "T90.1.csv cannot be used"),
     "table binary": (text("tables/T90.1.csv", b"\xff\x00\xfe"), "check", "T90.1.csv cannot be used"),
     "table empty": (text("tables/T90.1.csv", ""), "report", "T90.1.csv cannot be used"),
@@ -221,13 +220,14 @@ def test_a_damaged_baseline_is_named(toy_result: Path, command: Command, kind: s
     assert f"{path} is no baseline" in "".join(said.split("\n"))
 
 
+HEAD = '{"chapter": "90", "experiment": "decay", "samples": 2, "failed": 0, "varied": {}, '
 STUDIES = {
     "empty": "",
     "a list": "[]",
     "cut short": '{"chapter": "90", "exper',
-    "null claims": '{"chapter": "90", "experiment": "decay", "samples": 2, "failed": 0, "varied": {}, "claims": null}',
-    "unknown chapter": '{"chapter": "7x", "experiment": "decay", "samples": 2, "failed": 0, "varied": {}, "claims": {}}',
-    "other rows": '{"chapter": "90", "experiment": "decay", "samples": 2, "failed": 0, "varied": {}, "claims": {"C": 1}}',
+    "null claims": HEAD + '"claims": null}',
+    "a chapter of another kind": HEAD.replace('"90"', "[90]") + '"claims": {}}',
+    "other rows": HEAD + '"claims": {"C": 1}}',
     "binary": "\x00\x01",
 }
 
@@ -252,6 +252,21 @@ def test_lines_of_a_study_that_are_none_do_not_count(toy_result: Path, command: 
     status, said = command("study chapter=90 samples=2 workers=1")
     assert status == 0, said
     assert [json.loads(line)["index"] for line in path.read_text().splitlines()] == [0, 1]
+
+
+def test_the_report_shows_the_parameters_of_its_runs_and_marks_what_is_out_of_date(
+    toy_result: Path, toy_book: Path, command: Command
+) -> None:
+    def page() -> str:
+        assert command("report")[0] == 0
+        return " ".join(Path("results/report/chapter90.html").read_text().split())
+
+    assert "<td>1.0</td>" in page()
+    assert "out of date" not in page()
+    path = toy_book / "chapter90/decay/config.yaml"
+    path.write_text(path.read_text().replace("start: 1.0", "start: 1.75"))
+    assert "1.75" not in page()
+    assert "out of date: plain and 4 more cases of another configuration or code than the present" in page()
 
 
 @pytest.mark.parametrize(
