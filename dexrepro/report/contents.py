@@ -100,6 +100,8 @@ class Contents:
             if is_safe(place / "figures" / f"{file_stem(identifier)}.svg")
         ]
         series = explorer.write(place, target, run["cases"], experiment.film)
+        if series:
+            series["scene"] = explorer.scene(place, target, experiment)
         factor = f", {run['real_time_factor']:.1f} times real time" if run["real_time_factor"] else ""
         packages = ", ".join(f"{name} {version}" for name, version in run["packages"].items())
         return {
