@@ -13,7 +13,6 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
-from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, TABLE
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.experiment import Config, Metrics, Recording
@@ -21,6 +20,7 @@ from dexrepro.humans.operator import minimum_jerk
 from dexrepro.measures import rms
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.sensor import Sensor
+from dexrepro.physics.servo import PoseServo
 from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
@@ -55,7 +55,9 @@ def simulate(config: Config, rng: Rng) -> Recording:
     reach = config.leader_distance - config.radius + config.touch
     path = np.array(config.place) + (reach * share - config.leader_distance)[:, None] * ALONG
     with scene(config, rng) as world:
-        arms = {name: Follower(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()}
+        arms = {
+            name: PoseServo(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()
+        }
         arms["leader"].reset(np.array(world.arm("leader").q))
         own = AssistiveFollower(
             arms["follower"], config.field, ContactLatch(**config.latch), config.law, speed_limit=config.speed_limit
