@@ -7,6 +7,8 @@ from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array
 from dexrepro.control.computed_torque import ComputedTorque
+from dexrepro.control.contract import Measured
+from dexrepro.control.motion import Motion
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.robots.arm import Arm
@@ -37,7 +39,10 @@ class JointServo:
 
     def __call__(self, sense: Sense) -> Array:
         reference = self.start + (sense.time - self.since) * self.rate
-        return self.law(reference, sense.position, sense.velocity, self.rate) + self.compensation
+        measured = Measured(sense.time, sense.position, sense.velocity, -self.compensation)
+        torque = self.law(measured, Motion(reference, self.rate, np.zeros(len(reference)))).torque
+        assert torque is not None
+        return torque + self.compensation
 
 
 class PoseServo:
