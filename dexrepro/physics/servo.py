@@ -33,9 +33,10 @@ class JointServo:
         self.rate = self.compensation = np.zeros(len(self.start))
         self.since = 0.0
 
-    def refer(self, time: float, position: Array, rate: Array, compensation: Array) -> None:
+    def refer(self, time: float, position: Array, rate: Array, compensation: Array | None = None) -> None:
         """From ``time`` [s] on: reference angles ``position`` moving at ``rate`` [rad/s], and torque -J^T F [N m]."""
-        self.since, self.start, self.rate, self.compensation = time, position, rate, compensation
+        self.since, self.start, self.rate = time, position, rate
+        self.compensation = np.zeros(len(rate)) if compensation is None else compensation
 
     def __call__(self, sense: Sense) -> Array:
         reference = self.start + (sense.time - self.since) * self.rate
