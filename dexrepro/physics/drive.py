@@ -46,8 +46,11 @@ class JointDrive:
 class Kinematics(Protocol):
     """An end point (d,) [m] and its Jacobian (d, n) at joint angles (n,) [rad]."""
 
-    def position(self, q: Array) -> Array: ...
-    def jacobian(self, q: Array) -> Array: ...
+    def position(self, q: Array) -> Array:
+        """End point (d,) [m]."""
+
+    def jacobian(self, q: Array) -> Array:
+        """Its Jacobian (d, n) [m/rad]."""
 
 
 class EndPointDrive:

@@ -3,7 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dexrepro.humans.reaching import Obstacle, Reach, Reacher, bump, minimum_jerk
+from dexrepro.control.motion import minimum_jerk
+from dexrepro.humans.reaching import Obstacle, Reach, Reacher, bump
 
 REACH = Reach((2.3, 0.0), (20.0, 9.0))
 FAR = Obstacle((13.0, 5.0), 8.0)

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.humans.segmentation import change_point, slowest_point
-from dexrepro.humans.waypoints import average, draw, minimum_jerk, stroke
+from dexrepro.humans.waypoints import average, draw, stroke
 
 DOWN = [(0, 10), (0.5, 5), (0, 0)]
 ACROSS = [(0, 0), (5, 0.5), (10, 0)]

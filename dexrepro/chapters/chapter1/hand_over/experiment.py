@@ -16,7 +16,7 @@ from dexrepro.chapters.chapter1.assistive import AssistiveFollower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, TABLE
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.operator import minimum_jerk
+from dexrepro.humans.operator import strides
 from dexrepro.measures import rms
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.sensor import Sensor
@@ -51,7 +51,7 @@ def scene(config: Config, rng: Rng | None = None) -> World:
 def simulate(config: Config, rng: Rng) -> Recording:
     dt, cushion = config.control_period, config.cushion
     t = dt * np.arange(round(config.duration / dt) + 1)
-    share = np.interp((t - 0.3) / (ARRIVED - 0.3), np.linspace(0, 1, 501), np.r_[0.0, minimum_jerk(500)])
+    share = np.interp((t - 0.3) / (ARRIVED - 0.3), np.linspace(0, 1, 501), np.r_[0.0, strides(500)])
     reach = config.leader_distance - config.radius + config.touch
     path = np.array(config.place) + (reach * share - config.leader_distance)[:, None] * ALONG
     with scene(config, rng) as world:

@@ -19,7 +19,7 @@ from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, joint_channels
 from dexrepro.control.facing import facing
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.operator import minimum_jerk
+from dexrepro.humans.operator import strides
 from dexrepro.measures import angle_between, rms
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.servo import PoseServo
@@ -86,7 +86,7 @@ def script(config: Config) -> dict[str, Any]:
         inside = (t >= 6.0 * k) & (t < 6.0 * (k + 1))
         shake[inside, axis] = config.shake[k] * np.sin(2 * np.pi * t[inside] / 6.0)
     done = np.clip((t - SHAKEN) / (APPROACH - SHAKEN), 0, 1)
-    share = np.interp(done, np.linspace(0, 1, 501), np.r_[0.0, minimum_jerk(500)])
+    share = np.interp(done, np.linspace(0, 1, 501), np.r_[0.0, strides(500)])
     along = np.array([0.0, 1.0, 0.0])
     distance = config.leader_distance + (config.radius - config.leader_distance) * share
     rest = np.array(config.place)

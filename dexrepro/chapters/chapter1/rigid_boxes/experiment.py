@@ -18,7 +18,7 @@ from dexrepro.chapters.chapter1.hold_and_move.experiment import FLIP, LEVEL, SID
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.control.potential_field import PotentialField
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
-from dexrepro.humans.operator import minimum_jerk
+from dexrepro.humans.operator import strides
 from dexrepro.measures import binomial_interval, rms
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
@@ -75,7 +75,7 @@ def leading(config: Config) -> tuple[Any, Any]:
     """DFR's end point (n, 3) [m] and how far both hands open (n,) [m], one row a control period."""
     dt = config.control_period
     t = dt * np.arange(round(config.duration / dt) + 1)
-    profile = np.r_[0.0, minimum_jerk(500)]
+    profile = np.r_[0.0, strides(500)]
 
     def step(start: float, end: float) -> Any:
         return np.interp((t - start) / (end - start), np.linspace(0, 1, 501), profile)

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import arms, bimanual
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
