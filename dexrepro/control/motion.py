@@ -98,8 +98,8 @@ def held(curve: Curve, start: float, end: float) -> Path:
 
 def minimum_jerk(u: ArrayLike) -> Array:
     """Share 10 u^3 - 15 u^4 + 6 u^5 of a minimum-jerk movement done at normalised times u; still outside [0, 1]."""
-    u = np.clip(np.asarray(u, dtype=float), 0.0, 1.0)
-    return u**3 * (10 + u * (6 * u - 15))
+    share: Array = np.clip(np.asarray(u, dtype=float), 0.0, 1.0)
+    return share**3 * (10 + share * (6 * share - 15))
 
 
 def quintic(time: float, duration: float) -> tuple[float, float]:
