@@ -16,6 +16,7 @@ from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import rms
 from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
+from dexrepro.physics.loop import Probe
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.servo import PlanarServo
@@ -72,7 +73,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
             position = own.chain.forward(sense.position.tolist())[0] - x1
             return own(sense, x1 + float(law(sense.time, position, float(sense.force[0]))), height)
 
-        probes = {"reference": lambda: followers["follower"].last[0] - x1}
+        probes: dict[str, Probe] = {"reference": lambda: followers["follower"].last[0] - x1}
         probes |= channels(config.law, "weights", "estimate")
         recording = world.run(
             config.duration,
