@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,9 @@ try:
     __version__ = version("dexrepro")
 except PackageNotFoundError:  # running from a source tree that was never installed
     __version__ = "0+unknown"
+
+IMPORTED = time.time()
+"""When this process read the code; what has been edited since is imported anew in the processes that simulate."""
 
 __all__ = ["__version__", "load", "run"]
 

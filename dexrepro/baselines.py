@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters
 from dexrepro.config import InputError
-from dexrepro.plan import plan_chapter, select
+from dexrepro.plan import outdated, plan_chapter, select
+from dexrepro.recordings import read_frame
 from dexrepro.report.damage import check_result
 from dexrepro.runner import run_plans
 from dexrepro.storage import read_json, write_json
@@ -23,6 +25,7 @@ PERTURBATIONS = (1e-9, -1e-9)  # rad, or share of the input data's range; one ma
 RTOL = 1e-3
 ATOL = 1e-9
 NEAR_ZERO = 1e-6
+TABLE = 0.05  # by which a number of a table may change where no metric of its digits is more sensitive
 
 
 class ResultsMissing(Exception):
@@ -42,51 +45,113 @@ def baseline_file(chapter: str, experiment: str) -> Path:
     return baseline_dir() / f"chapter{chapter}" / f"{experiment}.json"
 
 
-def read(chapter: str) -> dict[str, Any]:
-    """Stored baseline of a chapter: {"metrics": {experiment: {name: {value, rtol, atol}}}, "claims": {id: verdict}}."""
-    whole: dict[str, Any] = {"metrics": {}, "claims": {}}
-    for experiment in chapters.load(chapter).experiments:
-        if (path := baseline_file(chapter, experiment.name)).exists():
-            stored = read_json(path)
-            whole["metrics"][experiment.name] = stored["metrics"]
-            whole["claims"] |= stored["claims"]
-    return whole
+@dataclass
+class Baseline:
+    """What is stored of one experiment: metrics as ``{name: {value, rtol, atol}}``, verdicts by claim, tables by id.
 
-
-def _write(chapter: str, baseline: Mapping[str, Any]) -> list[str]:
-    written = []
-    for name, metrics in baseline["metrics"].items():
-        ids = [claim.id for claim in chapters.load(chapter).claims_of(name)]
-        verdicts = {key: baseline["claims"][key] for key in ids if key in baseline["claims"]}
-        path = baseline_file(chapter, name)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_json(path, {"metrics": metrics, "claims": verdicts})
-        written.append(f"wrote {path}")
-    return written
-
-
-def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> dict[str, Any]:
-    """Compare the results of a chapter, or of some of its experiments, with its baseline.
-
-    Returns the shape documented for ``dexrepro check --json``. Raises ResultsMissing where an experiment was not run,
-    InputError where a result is damaged.
+    tables: None where none have been stored yet; then none are compared.
     """
-    baseline = read(chapter)
-    _, skipped = plan_chapter(chapter, [f"results='{results}'"])
-    report: dict[str, Any] = {
-        "chapter": chapter,
-        "compared": 0,
-        "drifted": [],
-        "missing": [],
-        "new": [],
-        "skipped": [],
-        "claims": [],
-        "verdict_changed": [],
-    }
+
+    metrics: dict[str, dict[str, Any]] = field(default_factory=dict)
+    claims: dict[str, str] = field(default_factory=dict)
+    tables: dict[str, dict[str, list[Any]]] | None = None
+
+    @classmethod
+    def of(cls, chapter: str, experiment: str) -> Baseline:
+        """The baseline of an experiment, empty where there is none. Raises InputError where its file is damaged."""
+        path = baseline_file(chapter, experiment)
+        if not path.exists():
+            return cls()
+        try:
+            found = cls(**read_json(path))
+            for name, entry in found.metrics.items():
+                _check_entry(name, entry)
+            for table in (found.tables or {}).values():
+                if len({len(column) for column in table.values()}) > 1:
+                    raise ValueError("the columns of a table have one length")
+        except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
+            raise InputError(f"{path} is no baseline ({' '.join(str(error).split())})") from error
+        return found
+
+
+def _check_entry(name: str, entry: Mapping[str, Any]) -> None:
+    value, tolerances = entry["value"], (entry["rtol"], entry["atol"])
+    if value is not None and not isinstance(value, int | float):
+        raise ValueError(f"{name}: value = {value!r} must be a number or null")
+    for key, size in zip(("rtol", "atol"), tolerances, strict=True):
+        top = 1 if key == "rtol" else math.inf
+        if not isinstance(size, int | float) or not 0 <= size <= top or math.isinf(size):
+            allowed = "0..1" if key == "rtol" else "a finite number of 0 or greater"
+            raise ValueError(f"{name}: {key} = {size!r} is not allowed: it must be {allowed}")
+
+
+@dataclass(frozen=True)
+class Drift:
+    """A metric outside its tolerance."""
+
+    experiment: str
+    name: str
+    value: float | None
+    baseline: float | None
+    rtol: float
+    atol: float
+
+
+@dataclass(frozen=True)
+class ClaimCheck:
+    """A claim's verdict in the results, and the one stored (None: there is none)."""
+
+    id: str
+    experiment: str
+    verdict: str | None
+    expected: str | None
+    margin: float | None
+
+
+@dataclass
+class ChapterReport:
+    """What ``dexrepro check --json`` says of a chapter: names of metrics, ids of claims, and sentences about tables.
+
+    unknown: experiments that have a baseline and no longer exist; outdated: what makes a result another than the
+    present configuration and code would give (it is said, and is no drift).
+    """
+
+    chapter: str
+    compared: int = 0
+    drifted: list[Drift] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+    new: list[str] = field(default_factory=list)
+    skipped: list[str] = field(default_factory=list)
+    claims: list[ClaimCheck] = field(default_factory=list)
+    verdict_changed: list[str] = field(default_factory=list)
+    tables: int = 0
+    tables_changed: list[str] = field(default_factory=list)
+    unknown: list[str] = field(default_factory=list)
+    outdated: list[str] = field(default_factory=list)
+
+    @property
+    def ok(self) -> bool:
+        """New metrics count as drift too: a baseline that does not know a number does not guard it."""
+        wrong = (self.drifted, self.missing, self.new, self.verdict_changed, self.tables_changed, self.unknown)
+        return not any(wrong)
+
+
+def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> ChapterReport:
+    """Compare the results of a chapter, or of some of its experiments, with its baseline; nothing is written.
+
+    Raises ResultsMissing where an experiment was not run, InputError where a result or a baseline is damaged.
+    """
+    plans, skipped = plan_chapter(chapter, write=False)
+    by_name = {plan.experiment: plan for plan in plans}
+    report = ChapterReport(chapter)
+    if not only and not chapters.is_added(chapter):
+        names = {experiment.name for experiment in chapters.load(chapter).experiments}
+        stored_files = (baseline_dir() / f"chapter{chapter}").glob("*.json")
+        report.unknown = sorted(path.stem for path in stored_files if path.stem not in names)
     for experiment in select(chapter, list(only) or None, None):
-        stored = baseline["metrics"].get(experiment.name, {})
+        stored = Baseline.of(chapter, experiment.name)
         if experiment.name in skipped:
-            report["skipped"] += list(stored)
+            report.skipped += list(stored.metrics)
             continue
         folder = results / f"chapter{chapter}" / experiment.name
         if not (folder / "run.json").exists():
@@ -94,44 +159,85 @@ def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> dict
                 f"no results of {experiment.name}; run: dexrepro run chapter={chapter} only={experiment.name}"
             )
         check_result(folder, "metrics.json", "claims.json")
-        metrics, claims = read_json(folder / "metrics.json"), read_json(folder / "claims.json")
-        _compare(report, experiment.name, metrics, stored)
-        for claim in claims:
-            expected = baseline["claims"].get(claim["id"])
-            report["claims"].append(
-                {
-                    "id": claim["id"],
-                    "experiment": experiment.name,
-                    "verdict": claim["verdict"],
-                    "expected": expected,
-                    "margin": claim["margin"],
-                }
-            )
-            if claim["verdict"] != expected:
-                report["verdict_changed"].append(claim["id"])
+        if reason := outdated(by_name[experiment.name], read_json(folder / "run.json")):
+            report.outdated.append(f"{experiment.name}: {reason}")
+        _compare(report, experiment.name, read_json(folder / "metrics.json"), stored.metrics)
+        _compare_claims(report, experiment.name, read_json(folder / "claims.json"), stored.claims)
+        _compare_tables(report, folder / "tables", stored)
     return report
 
 
 def _compare(
-    report: dict[str, Any], experiment: str, metrics: Mapping[str, Any], stored: Mapping[str, Mapping[str, Any]]
+    report: ChapterReport, experiment: str, metrics: Mapping[str, Any], stored: Mapping[str, Mapping[str, Any]]
 ) -> None:
     for name, entry in stored.items():
         if name not in metrics:
-            report["missing"].append(name)
+            report.missing.append(name)
             continue
-        report["compared"] += 1
+        report.compared += 1
         if not agrees(metrics[name], entry):
-            report["drifted"].append(
-                {
-                    "experiment": experiment,
-                    "name": name,
-                    "value": metrics[name],
-                    "baseline": entry["value"],
-                    "rtol": entry["rtol"],
-                    "atol": entry["atol"],
-                }
-            )
-    report["new"] += [name for name in metrics if name not in stored]
+            values = metrics[name], entry["value"], entry["rtol"], entry["atol"]
+            report.drifted.append(Drift(experiment, name, *values))
+    report.new += [name for name in metrics if name not in stored]
+
+
+def _compare_claims(
+    report: ChapterReport, experiment: str, claims: Sequence[Mapping[str, Any]], stored: Mapping[str, str]
+) -> None:
+    found = {claim["id"]: claim for claim in claims}
+    for key in dict.fromkeys([*found, *stored]):
+        verdict, margin = found.get(key, {}).get("verdict"), found.get(key, {}).get("margin")
+        report.claims.append(ClaimCheck(key, experiment, verdict, stored.get(key), margin))
+        if verdict != stored.get(key):
+            report.verdict_changed.append(key)
+
+
+def _compare_tables(report: ChapterReport, folder: Path, stored: Baseline) -> None:
+    """Tables guard what is done to numbers on the way to a reader (a unit, a column); drift is for the metrics."""
+    if stored.tables is None:
+        return
+    made = tables_of(folder)
+    for name in dict.fromkeys([*made, *stored.tables]):
+        report.tables += 1
+        if name not in made or name not in stored.tables:
+            report.tables_changed.append(f"{name} is {'missing' if name not in made else 'new'}")
+            continue
+        old, new = stored.tables[name], made[name]
+        if list(old) != list(new) or len(next(iter(old.values()), [])) != len(next(iter(new.values()), [])):
+            report.tables_changed.append(f"{name} has other rows or columns")
+            continue
+        for column in old:
+            size = max((abs(cell) for cell in old[column] if isinstance(cell, int | float)), default=0.0)
+            for row, (before, after) in enumerate(zip(old[column], new[column], strict=True), 1):
+                if not _same_cell(after, before, size, stored.metrics):
+                    report.tables_changed.append(f"{name}, row {row}, {column}: {after}, stored {before}")
+
+
+def _same_cell(value: Any, stored: Any, size: float, metrics: Mapping[str, Mapping[str, Any]]) -> bool:
+    """Whether a cell is what it was, within 5 % or the tolerance of the metrics that it may show, in whatever unit."""
+    numbers = [isinstance(cell, int | float) and not isinstance(cell, bool) for cell in (value, stored)]
+    if not all(numbers) or stored == 0:
+        return value == stored or (all(numbers) and abs(value) <= 1e-6 + 1e-3 * size)
+    tolerance = TABLE
+    for entry in metrics.values():
+        shown = entry["value"]
+        if shown and abs((power := math.log10(abs(stored / shown))) - round(power)) < 1e-4:
+            tolerance = max(tolerance, entry["rtol"] + entry["atol"] / abs(shown))
+    return abs(value - stored) <= tolerance * abs(stored) + 1e-3 * TABLE * size
+
+
+def tables_of(folder: Path) -> dict[str, dict[str, list[Any]]]:
+    """The tables of a result by id, each as its columns. Raises InputError where one cannot be read."""
+    found = {}
+    for path in sorted(folder.glob("*.csv")):
+        try:
+            frame = read_frame(path)
+        except (OSError, ValueError) as error:
+            raise InputError(f"{path} cannot be used ({' '.join(str(error).split())}); run: dexrepro draw") from error
+        found[path.stem] = {
+            str(name): [None if cell != cell else cell for cell in frame[name].tolist()] for name in frame
+        }
+    return found
 
 
 def agrees(value: float | None, entry: Mapping[str, Any]) -> bool:
@@ -140,11 +246,6 @@ def agrees(value: float | None, entry: Mapping[str, Any]) -> bool:
     if value is None or expected is None:
         return value is expected
     return abs(value - expected) <= entry["atol"] + entry["rtol"] * abs(expected)
-
-
-def is_ok(report: Mapping[str, Any]) -> bool:
-    """New metrics count as drift too: a baseline that does not know a number does not guard it."""
-    return not (report["drifted"] or report["missing"] or report["new"] or report["verdict_changed"])
 
 
 # --------------------------------------------------------------------------------------------------------- updating
@@ -167,28 +268,35 @@ def update_chapter(
         outcome = run_plans(which, workers=workers, force=False)
         if outcome.failures:
             raise InputError("; ".join(f"{name}: {text}" for name, text in outcome.failures.items()))
-    old = read(chapter)
-    new: dict[str, Any] = {"metrics": {}, "claims": {}}
+    old = {plan.experiment: Baseline.of(chapter, plan.experiment) for plan in plans}
+    new: dict[str, Baseline] = {}
     for plan, *perturbed in zip(plans, *moved, strict=True):
         metrics, *disturbed = (read_json(p.folder / "metrics.json") for p in (plan, *perturbed))
-        stored = old["metrics"].get(plan.experiment, {})
-        new["metrics"][plan.experiment] = {
+        stored = old[plan.experiment].metrics
+        entries = {
             name: _entry(value, [other.get(name) for other in disturbed], stored.get(name))
             for name, value in metrics.items()
         }
-        for claim in read_json(plan.folder / "claims.json"):
-            new["claims"][claim["id"]] = claim["verdict"]
+        verdicts = {claim["id"]: claim["verdict"] for claim in read_json(plan.folder / "claims.json")}
+        new[plan.experiment] = Baseline(entries, verdicts, tables_of(plan.folder / "tables"))
     changed = {
-        key: (old["claims"][key], verdict)
-        for key, verdict in new["claims"].items()
-        if key in old["claims"] and old["claims"][key] != verdict
+        key: (before, new[name].claims[key])
+        for name, stored_baseline in old.items()
+        for key, before in stored_baseline.claims.items()
+        if new[name].claims.get(key, before) != before
     }
     refused = [key for key in changed if key not in accept]
     if refused:
         texts = ", ".join(f"{key} ({changed[key][0]} -> {changed[key][1]})" for key in refused)
         raise InputError(f"verdicts changed: {texts}; review them and repeat with --accept {' '.join(refused)}")
-    written = _write(chapter, new)
-    return [f"{key}: {before} -> {after}" for key, (before, after) in changed.items()] + _sensitive(new) + written
+    written = []
+    for name, baseline in new.items():
+        path = baseline_file(chapter, name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_json(path, asdict(baseline))
+        written.append(f"wrote {path}")
+    lines = [f"{key}: {before} -> {after}" for key, (before, after) in changed.items()]
+    return [*lines, *(line for baseline in new.values() for line in _sensitive(baseline.metrics)), *written]
 
 
 def _entry(value: float | None, disturbed: Sequence[float | None], stored: Mapping[str, Any] | None) -> dict[str, Any]:
@@ -209,7 +317,10 @@ def _fresh_entry(value: float | None, disturbed: Sequence[float | None]) -> dict
         return {"value": value, "rtol": 0.0, "atol": _rounded(10 * change)}
     if abs(value) < NEAR_ZERO:
         return {"value": value, "rtol": RTOL, "atol": _rounded(max(ATOL, 10 * change))}
-    return {"value": value, "rtol": _rounded(max(RTOL, 10 * change / abs(value))), "atol": ATOL}
+    rtol = _rounded(max(RTOL, 10 * change / abs(value)))
+    if rtol > 1:  # it is near zero by the measure of its own sensitivity
+        return {"value": value, "rtol": RTOL, "atol": _rounded(10 * change)}
+    return {"value": value, "rtol": rtol, "atol": ATOL}
 
 
 def _rounded(tolerance: float) -> float:
@@ -220,10 +331,8 @@ def _rounded(tolerance: float) -> float:
     return float(f"{math.ceil(tolerance / unit - 1e-9) * unit:.2g}")
 
 
-def _sensitive(baseline: Mapping[str, Any]) -> list[str]:
+def _sensitive(metrics: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    sizes = {name: entry["rtol"] + entry["atol"] / abs(entry["value"] or 1) for name, entry in metrics.items()}
     return [
-        f"{name}: very sensitive (tolerance {entry['rtol']:.0%}), a poor metric"
-        for metrics in baseline["metrics"].values()
-        for name, entry in metrics.items()
-        if entry["rtol"] > 0.2
+        f"{name}: very sensitive (tolerance {size:.0%}), a poor metric" for name, size in sizes.items() if size > 0.2
     ]

@@ -10,8 +10,9 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext, suppress
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
@@ -19,11 +20,19 @@ from rich.table import Table
 from dexrepro import __version__
 from dexrepro.config import InputError
 
+if TYPE_CHECKING:
+    from dexrepro.baselines import ChapterReport
+
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--help", "-h", "--info", "-i", "--hydra-help", "--resolve")
 SHOWN = 6  # names in one line of the check
 STUDY = ("claim", "samples", "hours")  # what only a study knows
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
 
+for name in ("stdout", "stderr"):  # closed, or of an alphabet that lacks a sign: no reason to fail
+    stream: Any = getattr(sys, name) or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  as long as we run
+    setattr(sys, name, stream)
+    if hasattr(stream, "reconfigure"):
+        stream.reconfigure(errors="backslashreplace")
 out = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else 160)
 err = Console(stderr=True, highlight=False, soft_wrap=True)
 
@@ -32,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Entry point; returns the exit status."""
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    sys.path.insert(0, "")  # a user's own classes, named by _target_
+    sys.path.append("")  # a user's own classes, named by _target_: behind all that is installed
     try:
         return _dispatch(_experiments_option(arguments))
     except KeyboardInterrupt:
@@ -126,14 +135,30 @@ def _parser() -> argparse.ArgumentParser:
 
 def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
-    from dexrepro.selection import checked_chapter, quoted
+    from dexrepro.selection import for_hydra, quoted
 
     arguments = [quoted(argument) for argument in arguments]
     extra_dir, overrides = _config_dir_option(arguments)
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
         given = [text for text in overrides if not text.startswith("-") and "=" in text]
-        return _launch([*arguments, *checked_chapter(given, extra_dir)], _run_job)
+        if arguments[-2:] in (["--cfg", "job"], ["-c", "job"]) and not {"-m", "--multirun"} & set(arguments):
+            return _print_config(given, extra_dir)
+        return _launch(for_hydra(arguments, given, extra_dir), _run_job)
     return run_overrides(overrides, extra_dir)
+
+
+def _print_config(overrides: Sequence[str], extra_dir: str | None) -> int:
+    """Every parameter of the chapters selected, as the experiments see them."""
+    import yaml
+
+    from dexrepro.config import compose_chapter
+    from dexrepro.selection import chapters_of, of_chapter
+
+    numbers, rest = chapters_of(overrides, extra_dir)
+    for number in numbers:
+        composed = compose_chapter(number, of_chapter(number, numbers, rest), extra_dir)
+        print(yaml.safe_dump({key: value for key, value in composed.items() if key != "hydra"}, sort_keys=False))
+    return OK
 
 
 def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
@@ -157,7 +182,7 @@ def _make_importable(folder: str) -> None:
     if not Path(folder).is_dir():
         raise InputError(f"--config-dir = {folder} is not allowed: there is no such folder")
     if (path := str(Path(folder).resolve())) not in sys.path:
-        sys.path.insert(0, path)
+        sys.path.append(path)
 
 
 def run_overrides(overrides: Sequence[str], extra_dir: str | None = None) -> int:
@@ -301,38 +326,44 @@ def check_command(options: argparse.Namespace) -> int:
     except baselines.ResultsMissing as missing:
         err.print(str(missing), markup=False)
         return WRONG
-    ok = all(map(baselines.is_ok, reports))
+    ok = all(report.ok for report in reports)
     if options.json:
-        print(json.dumps({"ok": ok, "chapters": reports}, indent=1))
+        print(json.dumps({"ok": ok, "chapters": list(map(asdict, reports))}, indent=1))
     else:
         for report in reports:
             _print_check(report)
     return OK if ok else FAILED
 
 
-def _print_check(report: dict[str, Any]) -> None:
-    changed = {claim["id"]: claim for claim in report["claims"] if claim["id"] in report["verdict_changed"]}
+def _print_check(report: ChapterReport) -> None:
+    changed = [claim for claim in report.claims if claim.id in report.verdict_changed]
     out.print(
-        f"chapter {report['chapter']}: {report['compared']} metrics compared, {len(report['drifted'])} drifted, "
-        f"{len(report['missing'])} missing, {len(report['new'])} new, {len(report['skipped'])} skipped; "
-        f"{len(report['claims'])} claims, {len(changed)} verdicts changed"
+        f"chapter {report.chapter}: {report.compared} metrics compared, {len(report.drifted)} drifted, "
+        f"{len(report.missing)} missing, {len(report.new)} new, {len(report.skipped)} skipped; "
+        f"{len(report.claims)} claims, {len(changed)} verdicts changed; "
+        f"{report.tables} tables, {len(report.tables_changed)} differences"
     )
-    for entry in report["drifted"]:
-        tolerance = entry["atol"] + entry["rtol"] * abs(entry["baseline"] or 0)
-        out.print(f"  {entry['name']} = {entry['value']}, stored {entry['baseline']} +- {tolerance:.3g}", markup=False)
-    for kind in ("missing", "new"):
-        if names := report[kind]:
-            more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
-            out.print(f"  {kind}: {', '.join(names[:SHOWN])}{more}", markup=False)
-    for claim in changed.values():
-        out.print(f"  {claim['id']}: {claim['verdict']}, stored: {claim['expected']}", markup=False)
+    lines = []
+    for entry in report.drifted:
+        tolerance = entry.atol + entry.rtol * abs(entry.baseline or 0)
+        lines.append(f"{entry.name} = {entry.value}, stored {entry.baseline} +- {tolerance:.3g}")
+    for kind, names in {"missing": report.missing, "new": report.new}.items():
+        more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+        lines += [f"{kind}: {', '.join(names[:SHOWN])}{more}"] if names else []
+    lines += [f"{claim.id}: {claim.verdict or 'missing'}, stored: {claim.expected or 'none'}" for claim in changed]
+    lines += report.tables_changed[:SHOWN]
+    lines += [f"{name} has a baseline, and no such experiment exists" for name in report.unknown]
+    lines += [f"out of date: {text}" for text in report.outdated]
+    for line in lines:
+        out.print(f"  {line}", markup=False)
 
 
 def draw_command(options: argparse.Namespace) -> int:
     """Draw figures and tables again from what is on disk."""
     from dexrepro.plan import select
+    from dexrepro.pool import sentence
     from dexrepro.report.damage import check_result
-    from dexrepro.runner import redraw, sentence
+    from dexrepro.runner import redraw
     from dexrepro.selection import existing, selected
 
     numbers, only, results, _, _ = selected(options.selection)
@@ -373,7 +404,7 @@ def new_command(options: argparse.Namespace) -> int:
 
 
 def render_command(options: argparse.Namespace) -> int:
-    """``dexrepro render [FOLDER | chapter=N] [only=EXPERIMENT] [case=NAME] [format=gif|mp4]``.
+    """``dexrepro render [FOLDER | chapter=N] [only=EXPERIMENT] [case=NAME] [format=gif|mp4] [allow=MODULE,...]``.
 
     Without a folder or an experiment: the film of every experiment that declares one and has a result, where it is
     missing or older than its recording.
@@ -384,7 +415,8 @@ def render_command(options: argparse.Namespace) -> int:
 
     folders = [Path(text) for text in options.selection if "=" not in text]
     words = [text for text in options.selection if "=" in text]
-    numbers, only, results, _, values = selected(words, ("case", "format"))
+    numbers, only, results, _, values = selected(words, ("case", "format", "allow"))
+    allow = [name for name in values.get("allow", "").strip("[]").split(",") if name]
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
         raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
@@ -402,7 +434,7 @@ def render_command(options: argparse.Namespace) -> int:
     if not folders and not films:
         raise InputError(f"no result in {results} has a film; run first: dexrepro run")
     for folder in folders:
-        out.print(str(animation.render(folder, values.get("case"), kind)), markup=False)
+        out.print(str(animation.render(folder, values.get("case"), kind, allow)), markup=False)
     if not folders:
         out.print(f"nothing to render: {len(films)} films are up to date")
     return OK
@@ -410,8 +442,6 @@ def render_command(options: argparse.Namespace) -> int:
 
 def study_command(options: argparse.Namespace) -> int:
     """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=200] [hours=H] [jobs=N hydra/launcher=...]``."""
-    from concurrent.futures.process import BrokenProcessPool
-
     from dexrepro import study
     from dexrepro.selection import selected
 
@@ -423,8 +453,8 @@ def study_command(options: argparse.Namespace) -> int:
         for name in study.experiments_of(number, only, values.get("claim")):
             try:
                 path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update)
-            except BrokenProcessPool:
-                err.print("a process of the study was killed; the same command completes what is missing", markup=False)
+            except study.SamplesFailed as error:
+                err.print(str(error), markup=False)
                 return FAILED
             _print_study(name, path, results)
     return OK

@@ -15,6 +15,7 @@ import copy
 import difflib
 import math
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -32,7 +33,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from dexrepro import chapters
 
-SETTINGS = ("only", "figure", "seed", "results", "workers", "force", "quiet", "gui")
+SETTINGS = ("only", "figure", "seed", "results", "workers", "case_timeout", "force", "quiet", "gui")
 
 
 class InputError(Exception):
@@ -161,8 +162,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         raise InputError(
             f"'{own[0]}' needs --config-dir FOLDER, the folder that holds {own[0][1:].replace('=', '/')}.yaml"
         )
-    _offer(chapter)
-    raw = _shipped(str(config_dir()), chapter, _changed(chapter))
+    raw = as_written(chapter)
     shipped = inherited(raw)
     search = [f"hydra.searchpath=['file://{Path(extra_dir).resolve()}']"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
@@ -173,7 +173,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         if not overrides and not extra_dir:
             return shipped
         composed = inherited(_compose([f"chapter='{chapter}'", *forced(overrides, raw), *search]))
-    except (HydraException, OmegaConfBaseException) as error:
+    except (HydraException, OmegaConfBaseException, ValueError, TypeError) as error:
         raise InputError(" ".join(str(error.__cause__ or error).split())) from error
     if unknown := [key for key in composed if key not in shipped]:
         if not extra_dir:
@@ -238,6 +238,12 @@ def forced(overrides: Sequence[str], raw: Mapping[str, Any]) -> list[str]:
     keys = set(_keys(raw))
     return [f"++{text}" if re.match(r"[A-Za-z_]\w*\.", text) and text.partition("=")[0] not in keys
             and not text.startswith("hydra") else text for text in overrides]  # fmt: skip
+
+
+def as_written(chapter: str) -> dict[str, Any]:
+    """The shipped configuration of a chapter as its files have it, inheritance not filled in."""
+    _offer(chapter)
+    return _shipped(str(config_dir()), chapter, _changed(chapter))
 
 
 def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
@@ -305,16 +311,20 @@ def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> Non
 
 def _keys(node: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
     for key, value in node.items():
-        yield prefix + key
+        yield f"{prefix}{key}"
         if isinstance(value, Mapping):
             yield from _keys(value, f"{prefix}{key}.")
 
 
 def check_settings(composed: Mapping[str, Any]) -> None:
     """Refuse settings that are no experiment's and of which nothing can be made."""
+    if removed := [key for key in SETTINGS if key not in composed]:
+        raise InputError(f"'{removed[0]}' cannot be left out; give it a value instead")
     seed, results, figure = composed["seed"], composed["results"], composed["figure"]
-    if not _whole(seed) or seed < 0:
-        raise InputError(f"seed = {seed} is not allowed: it must be a whole number of 0 or greater")
+    if not _whole(seed) or not 0 <= seed < 1 << 64:
+        raise InputError(
+            f"seed = {str(seed)[:40]} is not allowed: it must be a whole number of 0 or greater, below 2^64"
+        )
     if not isinstance(results, str) or not results:
         raise InputError(f"results = {results!r} is not allowed: it must be the name of a folder")
     if isinstance(figure, list):
@@ -322,6 +332,9 @@ def check_settings(composed: Mapping[str, Any]) -> None:
     scene = composed.get("scene")
     if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]*", name := str(scene.get("name"))):
         raise InputError(f"scene.name = {name} is not allowed: it names a folder; use letters, digits, '_' and '-'")
+    timeout = composed["case_timeout"]
+    if timeout is not None and not (_number(timeout) and 0 < timeout < math.inf):
+        raise InputError(f"case_timeout = {timeout} is not allowed: it must be a number of seconds greater than 0")
     for key in ("force", "quiet", "gui"):
         if not isinstance(composed[key], bool):
             raise InputError(f"{key} = {composed[key]} is not allowed: it must be true or false")
@@ -342,6 +355,10 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
             where = f"{experiment}.cases.{name}".rstrip(".")
             raise InputError(f"{where} = {case} is not allowed: cases are names with what each changes")
     for name, overrides in _expanded(given or {"default": {}}, names, experiment, base):
+        if name == "summary" or not re.fullmatch(r"[\w+-]+", name):
+            raise InputError(
+                f"{experiment}.cases: '{name}' is not allowed as a name: use letters, digits and '_', and not 'summary'"
+            )
         merged = copy.deepcopy(base)
         for key, value in overrides.items():
             _assign(merged, key, copy.deepcopy(value), f"{experiment}.cases.{name}")
@@ -366,12 +383,15 @@ def _expanded(
     for name, overrides in cases.items():
         overrides = overrides or {}
         if "each" not in overrides:
-            yield name, overrides
+            yield str(name), overrides
             continue
-        key = overrides["each"]
+        key = str(overrides["each"])
         rest = {other: value for other, value in overrides.items() if other != "each"}
         values: Any = _resolve(names, experiment, base)
         for part in key.split("."):
+            if not isinstance(values, Mapping) or part not in values:
+                known = [name for name, value in leaves(base) if not name.endswith("_target_")]
+                raise InputError(f"{experiment}.cases.{name}.each: unknown key '{key}': {nearest(key, known)}")
             values = values[part]
         for value in values if isinstance(values, list) else [values]:
             yield f"{name}{_label(value)}", {**rest, key: value}
@@ -464,8 +484,8 @@ def check_values(config: Mapping[str, Any], where: str) -> None:
         name = next((part for part in reversed(key.split(".")) if not part.isdigit()), key)
         if not isinstance(value, int | float) or isinstance(value, bool):
             continue
-        if not math.isfinite(value):
-            raise InputError(f"{where}.{key} = {value} is not allowed: it must be a finite number")
+        if not abs(value) < math.inf or abs(value) > sys.float_info.max:
+            raise InputError(f"{where}.{key} = {str(value)[:20]} is not allowed: it must be a finite number")
         if _POSITIVE.search(name) and value <= 0:
             raise InputError(f"{where}.{key} = {value} is not allowed: it must be greater than 0")
         if _NOT_NEGATIVE.search(name) and value < 0:

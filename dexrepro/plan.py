@@ -9,14 +9,16 @@ import importlib.util
 import os
 import sys
 import tempfile
+import uuid
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from dexrepro import __version__, chapters
+from dexrepro import chapters, closure
+from dexrepro.case import targets
 from dexrepro.config import (
     SETTINGS,
     InputError,
@@ -31,22 +33,26 @@ from dexrepro.config import (
 from dexrepro.experiment import Experiment
 from dexrepro.storage import digest_of
 
-# Modules that change no result.
-COMMANDS = ("cli.py", "baselines.py", "progress.py", "study.py", "scaffold.py", "selection.py", "sweep.py")
 NUMERICAL = ("numpy", "scipy", "pybullet")  # packages whose version can change a number
 
 
 @dataclass(frozen=True)
 class Job:
-    """One case to simulate and measure."""
+    """One case to simulate and measure.
+
+    content: hash of its values and of all code and files that it uses; own: of the user's files among them.
+    """
 
     chapter: str
     experiment: str
     case: str
     config: dict[str, Any]
     seed: int
+    content: str
+    own: str
     folder: str
     gui: bool = False
+    timeout: float | None = None
 
     @property
     def name(self) -> str:
@@ -66,10 +72,14 @@ class Plan:
     differs: list[str] = field(default_factory=list)
 
     @property
-    def fingerprint(self) -> str:
-        """Changes with anything a result depends on, drawing code included."""
-        keys = [Path(job.folder).name for job in self.jobs]
-        return digest_of([keys, source_digest(self.chapter, with_report=True), __version__])
+    def contents(self) -> dict[str, str]:
+        """What each case is made of."""
+        return {job.case: job.content for job in self.jobs}
+
+    @cached_property
+    def presentation(self) -> str:
+        """Hash of the code that makes claims, tables and figures of numbers."""
+        return presentation(chapters.load(self.chapter).experiment(self.experiment))
 
 
 def plan_chapter(
@@ -79,15 +89,19 @@ def plan_chapter(
     composed: Mapping[str, Any] | None = None,
     perturbation: float = 0.0,
     extra_dir: str | None = None,
+    write: bool = True,
 ) -> tuple[list[Plan], dict[str, str]]:
-    """Plans of the experiments that the configuration selects, and those skipped with the reason."""
+    """Plans of the experiments that the configuration selects, and those skipped with the reason.
+
+    write: see that results can be written; else nothing is made.
+    """
     if chapter not in (*chapters.numbers(), chapters.OWN):
         raise InputError(f"unknown chapter '{chapter}'; chapters: {', '.join(chapters.numbers())}")
     config = composed if composed is not None else compose_chapter(chapter, overrides, extra_dir)
     shipped = compose_chapter(chapter)
     if config["gui"]:
         _require_display()
-    results = writable(Path(config["results"]))
+    results = writable(Path(config["results"])) if write else Path(config["results"])
     plans, skipped = [], {}
     for experiment in select(chapter, config["only"], config["figure"]):
         absent = [name for name in experiment.requires if importlib.util.find_spec(name) is None]
@@ -127,12 +141,15 @@ def _plan(
     if differs:
         label = block["name"] if chapter == chapters.OWN else name
         folder = results / "runs" / f"{label}-{digest_of([cases, seed])[:10]}"
-    jobs, code = [], [source_digest(chapter), [version(package) for package in NUMERICAL]]
+    experiment, versions = chapters.load(chapter).experiment(name), [version(package) for package in NUMERICAL]
+    jobs = []
     for case, values in cases.items():
         values = {**values, "perturbation": perturbation, "seed": seed, "case": case}
-        key = digest_of([name, values, own_digest(values), *code])
-        cached = results / ".cache" / name / f"{case}-{key[:16]}"
-        jobs.append(Job(chapter, name, case, values, seed, str(cached), bool(config["gui"])))
+        own = own_digest(values)
+        content = digest_of([name, values, own, code_digest(experiment, values)])
+        cached = results / ".cache" / name / f"{case}-{digest_of([content, versions])[:16]}"
+        jobs.append(Job(chapter, name, case, values, seed, content, own, str(cached), bool(config["gui"]),
+                        config["case_timeout"]))  # fmt: skip
     return Plan(chapter, name, block, jobs, folder, seed, differs)
 
 
@@ -187,35 +204,86 @@ def writable(results: Path) -> Path:
     return results
 
 
-@cache
-def source_digest(chapter: str, with_report: bool = False) -> str:
-    """Hash of the code a case depends on: everything but other chapters, and but report/ unless asked for."""
-    root = Path(__file__).parent
-    digest = hashlib.sha1()
-    if chapter != chapters.OWN and chapters.is_added(chapter):
-        for path in sorted(chapters.load(chapter).folder.rglob("*.py")):
-            digest.update(path.read_bytes())
-    for path in sorted(root.rglob("*.py")):
-        parts = path.relative_to(root).parts
-        if parts[0] == "chapters" and len(parts) > 2 and parts[1] not in (chapter, f"chapter{chapter}"):
-            continue
-        if parts[0] in COMMANDS or (parts[0] == "report" and not with_report):
-            continue
-        digest.update(str(parts).encode() + path.read_bytes())
-    return digest.hexdigest()
+# ------------------------------------------------------------------------------------------- what a result depends on
+
+
+def code_digest(experiment: Experiment, values: Mapping[str, Any]) -> str:
+    """Hash of the code of this package that a case uses: its simulation and the laws that its values name."""
+    module = f"{experiment.package}.experiment"
+    roots = [(module, name) for name in ("simulate", "measure", "RATE")]
+    roots += [("dexrepro.case", "run"), ("dexrepro.case", "live"), ("dexrepro.recordings", "save_recording")]
+    named = (closure.target(text) for text in targets(values))
+    return closure.digest([*roots, *(name for name in named if name[0].startswith("dexrepro."))])
+
+
+def presentation(experiment: Experiment) -> str:
+    """Hash of the code that makes claims, tables and figures of the numbers of an experiment."""
+    roots = [(f"{experiment.package}.{part}", "") for part in ("figures", "claims")]
+    roots += [(f"{experiment.package}.experiment", "summarise"), ("dexrepro.report.style", "")]
+    return closure.digest([*roots, *(("dexrepro.runner", name) for name in ("present", "summarise", "flat"))])
+
+
+def outdated(plan: Plan, run: Mapping[str, Any]) -> str:
+    """Why a result with this run.json is not what the present configuration and code give ("" where it is)."""
+    was: Mapping[str, Any] = run.get("contents", {})
+    other = [case for case in {**was, **plan.contents} if was.get(case) != plan.contents.get(case)]
+    if other:
+        more = f" and {len(other) - 1} more cases" if len(other) > 1 else ""
+        return f"{other[0]}{more} of another configuration or code than the present"
+    if run.get("presentation") != plan.presentation:
+        return "claims, tables and figures of other code than the present; run: dexrepro draw"
+    return ""
 
 
 def own_digest(values: Mapping[str, Any]) -> str:
-    """Hash of the user's files that a configuration names: data, and modules of classes with what is beside them."""
-    paths: set[Path] = set()
+    """Hash of the user's files that a configuration names: data, and modules of classes with what is beside them.
+
+    What a class of a notebook or script (``__main__``) does, no file tells: it is never the same again.
+    """
+    paths = own_modules(values)
     for key, text in leaves(values):
-        if not isinstance(text, str) or "." not in text:
+        if isinstance(text, str) and "." in text and key.rpartition(".")[2] != "_target_":
+            paths.update(path for name in (text, *glob.glob(text)) if (path := Path(name)).is_file())
+    if any(text.startswith("__main__.") for text in targets(values)):
+        return uuid.uuid4().hex
+    return digest_of([[str(path), _file_digest(path)] for path in sorted(paths)])
+
+
+def own_modules(values: Mapping[str, Any]) -> set[Path]:
+    """Source files of the classes that a configuration names: the user's with all beside them, others alone."""
+    paths: set[Path] = set()
+    for text in targets(values):
+        module = text.rpartition(".")[0]
+        if text.startswith("dexrepro."):
             continue
-        if key.rpartition(".")[2] != "_target_":
-            paths.update(map(Path, glob.glob(text)))
-        elif not text.startswith("dexrepro."):
-            with contextlib.suppress(ImportError, AttributeError, ValueError):
-                module = Path(str(importlib.util.find_spec(text.rpartition(".")[0]).origin))  # type: ignore[union-attr]
-                installed = module.is_relative_to(sys.prefix) or module.is_relative_to(sys.base_prefix)
-                paths.update([module] if installed else module.parent.glob("*.py"))
-    return digest_of([[str(path), path.read_bytes().hex()] for path in sorted(paths) if path.is_file()])
+        for path in closure.sources([closure.target(text)]):
+            paths.update(path.parent.glob("*.py"))
+        with contextlib.suppress(ImportError, AttributeError, ValueError):
+            place = Path(str(importlib.util.find_spec(module).origin))  # type: ignore[union-attr]
+            paths.update([place] if place.is_file() else [])
+    return paths
+
+
+def import_anew(values: Mapping[str, Any]) -> None:
+    """Forget the user's modules that a configuration names where this process read them before they were edited."""
+    paths = {path for path in own_modules(values) if not closure.is_installed(path)}
+    state = {path: _file_digest(path) for path in paths}
+    if all(_imported.get(path) == digest for path, digest in state.items()):
+        return
+    _imported.update(state)
+    for name, module in list(sys.modules.items()):
+        place = getattr(module, "__file__", None)
+        if name != "__main__" and place and Path(place) in paths:
+            del sys.modules[name]
+            with contextlib.suppress(OSError, NotImplementedError):  # of the same second and size, it passes for new
+                Path(importlib.util.cache_from_source(place)).unlink()
+    importlib.invalidate_caches()
+
+
+_imported: dict[Path, str] = {}
+"""Files of the user's modules as this process last read them."""
+
+
+def _file_digest(path: Path) -> str:
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha1").hexdigest()

@@ -1,75 +1,270 @@
-"""The process pool: one process a core, one BLAS thread a process, and no process that outlives the command."""
+"""The process pool: one process a core, one BLAS thread a process, and no process that outlives the command.
+
+Each worker has a pipe of its own, shares no lock with the others and holds one task at a time: whenever and however it
+dies, only its own task fails, and another worker takes its place. Tasks wait here until a worker is free.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import ctypes
 import gc
+import importlib
 import multiprocessing
 import os
 import signal
 import sys
+import threading
+import time
+import traceback
+import warnings
+from collections import deque
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
-Submit = Callable[..., Future[Any]]
+from dexrepro.config import InputError
+
+TICK = 0.2  # s between looks at workers whose end nobody announces
+COMPLETES = "the same command completes what is missing"
 
 
-@contextlib.contextmanager
-def pool(
-    workers: int | None, listen: Callable[[Any], None] | None = None, in_process: bool = False
-) -> Iterator[Submit]:
-    """``submit(function, *arguments)`` to ``workers`` processes (None: one a core), or to this process.
+@dataclass(frozen=True)
+class Failure:
+    """Why a task gave no result, in one sentence; ``exit`` is the status of a process that died of it."""
 
-    ``listen`` is handed the queue on which the workers say (process, simulated time [s], duration [s]) and must keep it
-    empty. An exception inside the block, Ctrl-C among them, ends the workers at once.
+    sentence: str
+    traceback: str = ""
+    exit: int | None = None
+
+    @classmethod
+    def of(cls, error: BaseException) -> Failure:
+        return cls(sentence(error), "".join(traceback.format_exception(error)))
+
+
+def sentence(error: BaseException) -> str:
+    """What went wrong, in one line."""
+    text = " ".join(str(error).split())
+    return text if isinstance(error, InputError) else f"{type(error).__name__}: {text}"
+
+
+@dataclass
+class _Task:
+    key: Any
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    timeout: float | None
+    tries: int = 2  # a worker may be killed between two tasks: what it had not begun is handed on
+
+
+class Pool:
+    """``add`` tasks, then take their ``results`` as they come; tasks may be added on the way.
+
+    workers: processes at most (None: one a core); as many begin as there are tasks. ``report`` is told
+    (process, simulated time [s], duration [s]) by the simulations under way. here: use no other process.
+    Leaving the block, by Ctrl-C too, ends the workers and what they have started.
     """
-    if in_process:
-        yield _submit_here
-        return
-    import dexrepro.physics.loop  # noqa: F401  imported once, before the processes fork
 
-    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
-    queue = context.SimpleQueue() if listen else None
-    if listen:
-        listen(queue)
-    executor = ProcessPoolExecutor(
-        workers or available_cores(), mp_context=context, initializer=begin_worker, initargs=(queue,)
-    )
-    try:
-        yield executor.submit
-    except BaseException:
-        for process in list(executor._processes.values()):
-            process.kill()
-        executor.shutdown(wait=False, cancel_futures=True)
-        raise
-    executor.shutdown()
+    def __init__(
+        self, workers: int | None = None, report: Callable[[int, float, float], None] | None = None, here: bool = False
+    ) -> None:
+        self.size, self.report, self.here = workers or available_cores(), report, here
+        self._context = multiprocessing.get_context(start_method())
+        self._tasks: deque[_Task] = deque()
+        self._workers: list[_Worker] = []
+
+    def __enter__(self) -> Pool:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for worker in self._workers:
+            worker.end()
+
+    def add(self, key: Any, function: Callable[..., Any], *arguments: Any, timeout: float | None = None,
+            first: bool = False) -> None:  # fmt: skip
+        """One more task, before all that wait if ``first``; ``timeout`` [s] ends it and its process."""
+        task = _Task(key, function, arguments, timeout)
+        self._tasks.appendleft(task) if first else self._tasks.append(task)
+
+    def results(self) -> Iterator[tuple[Any, Any]]:
+        """(key, what the function returned or a Failure) of every task, in the order in which they end."""
+        while self.here and self._tasks:
+            task = self._tasks.popleft()
+            try:
+                yield task.key, task.function(*task.arguments)
+            except Exception as error:
+                yield task.key, Failure.of(error)
+        while self._tasks or any(worker.task for worker in self._workers):
+            self._hand_out()
+            connections = {worker.connection: worker for worker in self._workers}
+            for connection in wait(list(connections), TICK):
+                worker = connections[connection]
+                try:
+                    kind, content = worker.connection.recv()
+                except (EOFError, OSError):
+                    yield from self._buried(worker)
+                    continue
+                if kind == "begun":
+                    worker.begun = True
+                elif kind == "report":
+                    if self.report:
+                        self.report(*content)
+                elif worker.task:
+                    key, worker.task = worker.task.key, None
+                    yield key, content
+            for worker in list(self._workers):
+                if not worker.process.is_alive() and not worker.connection.poll():
+                    yield from self._buried(worker)
+                elif worker.task and time.monotonic() > worker.deadline:
+                    worker.end()
+                    reason = f"it took longer than case_timeout = {worker.task.timeout:g} s"
+                    yield from self._buried(worker, Failure(reason))
+
+    def _hand_out(self) -> None:
+        while self._tasks:
+            free = next((worker for worker in self._workers if worker.task is None), None)
+            if free is None and len(self._workers) < self.size:
+                free = _Worker(self._context, [worker.connection for worker in self._workers])
+                self._workers.append(free)
+            if free is None:
+                return
+            free.begin(self._tasks.popleft())
+
+    def _buried(self, worker: _Worker, failure: Failure | None = None) -> Iterator[tuple[Any, Failure]]:
+        """Take leave of a worker that is gone; its task fails, or is handed on if it had not been begun."""
+        if worker not in self._workers:
+            return
+        self._workers.remove(worker)
+        worker.end()
+        task = worker.task
+        if task is None:
+            return
+        task.tries -= 1
+        if failure is None and not worker.begun and task.tries:
+            self._tasks.appendleft(task)
+        else:
+            yield task.key, failure or _death(worker.process.exitcode or 0)
 
 
-def _submit_here(function: Callable[..., Any], *arguments: Any) -> Future[Any]:
-    future: Future[Any] = Future()
-    try:
-        future.set_result(function(*arguments))
-    except Exception as error:
-        future.set_exception(error)
-    return future
+def _death(status: int) -> Failure:
+    """Why a process is gone: killed from outside (a lack of memory does so too), or crashed by itself."""
+    name = signal.Signals(-status).name if status < 0 else f"exit status {status}"
+    if status in (-getattr(signal, "SIGKILL", 9), -signal.SIGTERM):
+        return Failure(f"its process was killed ({name}); {COMPLETES}", exit=status)
+    return Failure(f"its process crashed ({name}) in code that it calls; no other case is concerned", exit=status)
 
 
-def begin_worker(queue: Any) -> None:
-    """Leave Ctrl-C to the parent, die with it, use one BLAS thread, and report simulated time."""
+class _Worker:
+    """One process of the pool, its pipe and the task it has."""
+
+    def __init__(self, context: Any, others: list[Connection]) -> None:
+        self.connection, theirs = context.Pipe()
+        forked = context.get_start_method() == "fork"
+        inherited = [*others, self.connection] if forked else []
+        self.process = context.Process(target=serve, args=(theirs, inherited), daemon=False)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message=".*fork.*", category=DeprecationWarning)
+            self.process.start()
+        theirs.close()
+        self.task: _Task | None = None
+        self.begun, self.deadline = False, float("inf")
+
+    def begin(self, task: _Task) -> None:
+        self.task, self.begun = task, False
+        self.deadline = time.monotonic() + task.timeout if task.timeout else float("inf")
+        with contextlib.suppress(OSError):  # it has just died: the next look finds it
+            self.connection.send((task.function, task.arguments))
+
+    def end(self) -> None:
+        """Kill the process and all that it has started."""
+        with contextlib.suppress(OSError):
+            if hasattr(os, "killpg") and os.getpgid(self.process.pid) == self.process.pid:
+                os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.kill()
+        self.process.join()
+        self.connection.close()
+
+
+# ------------------------------------------------------------------------------------------------------ in a worker
+
+
+def serve(connection: Connection, inherited: list[Connection]) -> None:
+    """What a worker does: a task after another, until its pipe is closed."""
+    for other in inherited:
+        other.close()
+    forget_edited()
+    importlib.import_module(__name__).serve_tasks(connection)
+
+
+def serve_tasks(connection: Connection) -> None:
+    """Receive tasks, send what they return or why they fail; a fork of this process that a law made is left alone."""
+    begin_worker(connection)
+    me = os.getpid()
+    while True:
+        try:
+            received = connection.recv_bytes()
+        except (EOFError, OSError):
+            os._exit(0)
+        connection.send(("begun", None))
+        try:
+            function, arguments = ForkingPickler.loads(received)
+            answer = ForkingPickler.dumps(("done", function(*arguments)))
+        except BaseException as error:
+            answer = ForkingPickler.dumps(("done", Failure.of(error)))
+        if os.getpid() != me:
+            os._exit(0)
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError, ValueError, AttributeError):
+                stream.flush()
+        connection.send_bytes(answer)
+
+
+def begin_worker(connection: Connection) -> None:
+    """Leave Ctrl-C to the parent, die with it, use one BLAS thread, report simulated time."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    with contextlib.suppress(OSError, AttributeError):
+        os.setpgid(0, 0)  # so that what a law starts can be ended with it
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+    with contextlib.suppress(OSError, AttributeError):  # where Linux offers it: also in the midst of a long call
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)
     from threadpoolctl import threadpool_limits
 
     from dexrepro.physics.loop import Progress as Simulation
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)
     threadpool_limits(1)
     gc.freeze()  # what is imported stays; without this the collector walks all of it again and again
     gc.set_threshold(20_000)
-    if queue is not None:
-        Simulation.report = staticmethod(lambda simulated, duration: queue.put((os.getpid(), simulated, duration)))
+    Simulation.report = staticmethod(
+        lambda simulated, duration: connection.send(("report", (os.getpid(), simulated, duration)))
+    )
+
+
+def _end_with(parent: Any) -> None:
+    parent.join()
+    os._exit(1)
+
+
+def forget_edited() -> None:
+    """Let this package be imported anew where one of its files has been edited since it was imported."""
+    package = sys.modules["dexrepro"]
+    loaded = [(name, getattr(m, "__file__", None)) for name, m in sys.modules.items() if name.startswith("dexrepro")]
+    for _, place in loaded:
+        with contextlib.suppress(OSError):
+            if place and os.stat(place).st_mtime > package.IMPORTED:
+                for name, _ in loaded:
+                    del sys.modules[name]
+                importlib.invalidate_caches()
+                return
+
+
+def start_method() -> str:
+    """How processes begin: as the program has set it, else by a fork on Linux, where that is quick and safe."""
+    return multiprocessing.get_start_method(allow_none=True) or ("fork" if sys.platform == "linux" else "spawn")
 
 
 def available_cores() -> int:

@@ -3,47 +3,40 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as RichProgress
 
+if TYPE_CHECKING:
+    from dexrepro.runner import CaseEntry
+
 
 class Progress(Protocol):
     """Told by the runner what happens."""
 
-    def listen(self, queue: Any) -> None: ...
     def begin(self, cases: int) -> None: ...
-    def refresh(self) -> None: ...
-    def finished(self, name: str, entry: Mapping[str, Any]) -> None: ...
+    def report(self, process: int, simulated: float, duration: float) -> None: ...
+    def note(self, sentence: str) -> None: ...
+    def finished(self, name: str, entry: CaseEntry) -> None: ...
     def failed(self, name: str, sentence: str) -> None: ...
     def assembled(self, experiment: str) -> None: ...
 
 
 class Silent:
-    """Shows nothing; keeps the workers' queue empty."""
-
-    queue: Any = None
-
-    def listen(self, queue: Any) -> None:
-        self.queue = queue
+    """Shows nothing."""
 
     def begin(self, cases: int) -> None:
         pass
 
-    def refresh(self) -> None:
-        self.reports()
+    def report(self, process: int, simulated: float, duration: float) -> None:
+        pass
 
-    def reports(self) -> list[tuple[int, float, float]]:
-        """What the workers have said since the last call: (process, simulated time [s], duration [s])."""
-        found = []
-        while self.queue is not None and not self.queue.empty():
-            found.append(self.queue.get())
-        return found
+    def note(self, sentence: str) -> None:
+        pass
 
-    def finished(self, name: str, entry: Mapping[str, Any]) -> None:
+    def finished(self, name: str, entry: CaseEntry) -> None:
         pass
 
     def failed(self, name: str, sentence: str) -> None:
@@ -59,11 +52,14 @@ class Lines(Silent):
     def __init__(self, console: Console) -> None:
         self.console = console
 
-    def finished(self, name: str, entry: Mapping[str, Any]) -> None:
-        self.console.print(case_line(name, entry), highlight=False, soft_wrap=True)
+    def note(self, sentence: str) -> None:
+        self.console.print(sentence, highlight=False, markup=False, soft_wrap=True)
+
+    def finished(self, name: str, entry: CaseEntry) -> None:
+        self.note(case_line(name, entry))
 
     def failed(self, name: str, sentence: str) -> None:
-        self.console.print(f"{name}: failed: {sentence}", highlight=False, soft_wrap=True)
+        self.note(f"{name}: failed: {sentence}")
 
 
 class Bar(Lines):
@@ -85,17 +81,16 @@ class Bar(Lines):
         self.task = self.bar.add_task("running", total=cases)
         self.bar.start()
 
-    def refresh(self) -> None:
+    def report(self, process: int, simulated: float, duration: float) -> None:
         now = time.monotonic()
-        for process, simulated, duration in self.reports():
-            before, then = self.latest.get(process, (0.0, now, 0.0, 0.0))[:2]
-            speed = (simulated - before) / (now - then) if simulated > before and now > then else 0.0
-            self.latest[process] = (simulated, now, duration, speed)
+        before, then = self.latest.get(process, (0.0, now, 0.0, 0.0))[:2]
+        speed = (simulated - before) / (now - then) if simulated > before and now > then else 0.0
+        self.latest[process] = (simulated, now, duration, speed)
         active = [entry for entry in self.latest.values() if now - entry[1] < 3]
         text = ", ".join(f"{t:.0f}/{total:.0f} s ({speed:.0f}x)" for t, _, total, speed in active)
         self.bar.update(self.task, description=f"simulated {text}" if text else "running")
 
-    def finished(self, name: str, entry: Mapping[str, Any]) -> None:
+    def finished(self, name: str, entry: CaseEntry) -> None:
         super().finished(name, entry)
         self.bar.advance(self.task)
 
@@ -110,11 +105,11 @@ class Bar(Lines):
         self.bar.stop()
 
 
-def case_line(name: str, entry: Mapping[str, Any]) -> str:
+def case_line(name: str, entry: CaseEntry) -> str:
     """One line about a finished case."""
-    parts = [f"{entry['wall']:.1f} s"]
-    if entry["simulated"]:
-        parts.append(f"{entry['simulated']:g} s simulated, {entry['real_time_factor']:.0f}x real time")
-    if entry["status"] != "finished":
-        parts.append(entry["status"])
+    parts = [f"{entry.wall:.1f} s"]
+    if entry.real_time_factor:
+        parts.append(f"{entry.simulated:g} s simulated, {entry.real_time_factor:.0f}x real time")
+    if entry.status != "finished":
+        parts.append(entry.status)
     return f"{name}: {'; '.join(parts)}"

@@ -3,44 +3,40 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import platform
-import re
 import shutil
 import subprocess
 import time
-import traceback
 import warnings
 import zlib
 from collections.abc import Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
-from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from dexrepro import __version__, chapters
+from dexrepro.case import live
+from dexrepro.case import run as run_case
 from dexrepro.config import InputError
-from dexrepro.experiment import Config, Experiment, Metrics, Recording
-from dexrepro.plan import Job, Plan
-from dexrepro.pool import pool
+from dexrepro.experiment import Config, Experiment, Metrics
+from dexrepro.plan import NUMERICAL, Job, Plan, import_anew, own_digest, presentation
+from dexrepro.pool import COMPLETES, Failure, Pool, start_method
 from dexrepro.progress import Progress, Silent
+from dexrepro.recordings import load_recording, save_recording
 from dexrepro.storage import (
     claimed,
-    finite,
-    load_recording,
+    copy,
     locked,
     read_json,
     read_yaml,
     remove_leftovers,
-    save_recording,
+    sync,
     whole_folder,
     write_json,
+    write_text,
     write_yaml,
 )
 
@@ -66,93 +62,135 @@ class Outcome:
         return found
 
 
+@dataclass(frozen=True)
+class CaseEntry:
+    """What run.json says of a case: how it ended, steps, simulated time [s], wall time [s] and their quotient.
+
+    warnings: what the user's files made doubtful, above all.
+    """
+
+    status: str
+    steps: int
+    simulated: float
+    wall: float
+    real_time_factor: float | None
+    warnings: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class RunEntry:
+    """run.json: what was run, with what code and packages, on what machine, and how long it took.
+
+    contents: what each case is made of; presentation: the code that drew it (see ``plan``); series: their files.
+    """
+
+    chapter: str
+    experiment: str
+    version: str
+    revision: str | None
+    seed: int
+    contents: dict[str, str]
+    presentation: str
+    differs: list[str]
+    series: list[str]
+    packages: dict[str, str]
+    machine: str
+    python: str
+    wall: float
+    steps: int
+    simulated: float
+    real_time_factor: float | None
+    cases: dict[str, CaseEntry]
+
+
 # --------------------------------------------------------------------------------------------------------- running
 
 
-def generator(seed: int, experiment: str, purpose: str) -> np.random.Generator:
-    """The random numbers of one purpose: the same in all cases of an experiment."""
-    entropy = [seed, zlib.crc32(experiment.encode()), zlib.crc32(purpose.encode())]
-    return np.random.default_rng(np.random.SeedSequence(entropy))
-
-
-def live(config: Mapping[str, Any]) -> Config:
-    """A configuration whose ``_target_`` nodes are objects; InputError says why one cannot be made."""
-    from hydra.utils import instantiate
-
-    if "_target_" in json.dumps(finite(config), default=str):
-        try:
-            config = instantiate(dict(config), _convert_="all")
-        except Exception as error:
-            cause: BaseException = error
-            while cause.__cause__ is not None:
-                cause = cause.__cause__
-            text = " ".join(str(cause).split())
-            if isinstance(cause, LookupError | AttributeError | TypeError):  # these say little by themselves
-                text = f"{type(cause).__name__}: {text}"
-            where = re.search(r"full_key: (\S+)", str(error))
-            key = f" ({where[1]})" if where else ""
-            raise InputError(f"cannot build the objects of the configuration{key}: {text}") from error
-    return Config.of(config)
-
-
-def execute(job: Job) -> dict[str, Any]:
-    """Simulate, measure and store one case; returns its entry for run.json."""
+def execute(job: Job) -> CaseEntry:
+    """Simulate, measure and store one case."""
     from dexrepro.physics.world import World
 
     World.live = job.gui
     experiment = chapters.load(job.chapter).experiment(job.experiment)
-    start = time.perf_counter()
+    import_anew(job.config)
     with warnings.catch_warnings(record=True) as caught:
         config = live(job.config)
-        recording: Recording = experiment.simulation.simulate(
-            config, lambda purpose: generator(job.seed, job.experiment, purpose)
-        )
-        wall = time.perf_counter() - start
-        measured: Metrics = experiment.simulation.measure(recording, config)
-    entry = {
-        "status": recording.status,
-        "steps": recording.steps,
-        "simulated": recording.simulated,
-        "wall": wall,
-        "real_time_factor": recording.simulated / wall if recording.simulated else None,
-    }
-    if caught:  # what the user's files made doubtful, above all
-        entry["warnings"] = sorted({" ".join(str(warning.message).split()) for warning in caught})
+        if job.own != own_digest(job.config) and "__main__." not in str(job.config):
+            raise InputError("a file that it uses was edited meanwhile; the same command runs it again")
+        recording, metrics, wall = run_case(experiment, config, job.seed)
+    factor = recording.simulated / wall if recording.simulated else None
+    doubts = sorted({" ".join(str(warning.message).split()) for warning in caught})
+    entry = CaseEntry(recording.status, recording.steps, recording.simulated, wall, factor, doubts)
     with whole_folder(Path(job.folder)) as folder:
         save_recording(recording, folder / "series", job.case, experiment.rate)
-        write_json(folder / "case.json", {"entry": entry, "metrics": measured, "config": job.config})
+        files = {path.name: [path.stat().st_size, _checksum(path)] for path in sorted((folder / "series").iterdir())}
+        content = {"entry": asdict(entry), "metrics": metrics, "config": job.config, "files": files}
+        write_json(folder / "case.json", content)
+        sync(folder)
     return entry
 
 
-def complete(job: Job) -> dict[str, Any]:
+def complete(job: Job) -> CaseEntry:
     """Execute a case unless another process has finished it meanwhile."""
     folder = Path(job.folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
     with claimed(folder.parent, folder.name):
-        if (folder / "case.json").exists():
-            return dict(read_json(folder / "case.json")["entry"])
+        if (data := stored_case(job)) is not None:
+            return CaseEntry(**data["entry"])
         return execute(job)
 
 
-def assemble(plan: Plan) -> None:
-    """Turn the cached cases of a plan into a result folder with metrics, claims, tables, figures and provenance."""
+def stored_case(job: Job, thorough: bool = False) -> dict[str, Any] | None:
+    """What the cache holds of a case; None where it lacks the case or a file of it is damaged.
+
+    thorough: look at every byte of the series, not only at their sizes.
+    """
+    folder = Path(job.folder)
+    try:
+        data = read_json(folder / "case.json")
+        CaseEntry(**data["entry"])
+        for name, (size, checksum) in data["files"].items():
+            path = folder / "series" / name
+            if path.stat().st_size != size or (thorough and _checksum(path) != checksum):
+                return None
+        return data if isinstance(data["metrics"], dict) and isinstance(data["config"], dict) else None
+    except (OSError, ValueError, TypeError, KeyError, AttributeError):
+        return None
+
+
+def _checksum(path: Path) -> int:
+    return zlib.crc32(path.read_bytes())
+
+
+def assemble(plan: Plan) -> list[Job]:
+    """Turn the cached cases of a plan into a result folder with metrics, claims, tables, figures and provenance.
+
+    Returns the cases that the cache no longer has whole; then nothing has been assembled.
+    """
     experiment = chapters.load(plan.chapter).experiment(plan.experiment)
-    cases = {job.case: read_json(Path(job.folder) / "case.json") for job in plan.jobs}
-    nested: dict[str, Metrics] = {case: data["metrics"] for case, data in cases.items()}
-    configs = {case: data["config"] for case, data in cases.items()}
+    found = {job.case: stored_case(job, thorough=True) for job in plan.jobs}
+    if lacking := [job for job in plan.jobs if found[job.case] is None]:
+        return lacking
+    cases: dict[str, dict[str, Any]] = {name: data for name, data in found.items() if data}
+    nested: dict[str, Metrics] = {name: data["metrics"] for name, data in cases.items()}
+    configs = {name: data["config"] for name, data in cases.items()}
     config = Config.of({**plan.block, "cases": configs})
     summarise(experiment, nested, config)
     with whole_folder(plan.folder) as folder:
         (folder / "series").mkdir()
         for job in plan.jobs:
-            for path in sorted((Path(job.folder) / "series").glob("*")):
-                _link(path, folder / "series" / path.name)
+            for name in cases[job.case]["files"]:
+                copy(Path(job.folder, "series", name), folder / "series" / name)
         write_yaml(folder / "config.yaml", config)
         write_json(folder / "metrics.json", flat(experiment.name, nested))
-        write_json(folder / "run.json", _run_entry(plan, {case: data["entry"] for case, data in cases.items()}))
+        entries = {name: CaseEntry(**data["entry"]) for name, data in cases.items()}
+        series = sorted(path.name for path in (folder / "series").iterdir())
+        write_json(folder / "run.json", asdict(_run_entry(plan, entries, series)))
         present(plan.chapter, experiment, folder)
         _keep_animations(plan.folder, folder)
+        sync(folder)
     _prune(plan)
+    return []
 
 
 def _keep_animations(old: Path, new: Path) -> None:
@@ -161,7 +199,7 @@ def _keep_animations(old: Path, new: Path) -> None:
         recording = new / "series" / f"{path.stem}.csv.gz"
         if recording.exists() and recording.stat().st_mtime <= path.stat().st_mtime:
             (new / "animation").mkdir(exist_ok=True)
-            _link(path, new / "animation" / path.name)
+            copy(path, new / "animation" / path.name)
 
 
 def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config) -> None:
@@ -201,7 +239,8 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
 def redraw(chapter: str, experiment: Experiment, target: Path) -> None:
     """Present again a result from its files alone; where that fails, it stays as it was."""
     with whole_folder(target) as folder:
-        shutil.copytree(target, folder, dirs_exist_ok=True, copy_function=_link)
+        shutil.copytree(target, folder, dirs_exist_ok=True, copy_function=copy)
+        write_json(folder / "run.json", read_json(target / "run.json") | {"presentation": presentation(experiment)})
         present(chapter, experiment, folder)
 
 
@@ -214,26 +253,28 @@ def flat(experiment: str, nested: Mapping[str, Metrics]) -> Metrics:
     }
 
 
-def _run_entry(plan: Plan, entries: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    simulated = sum(entry["simulated"] for entry in entries.values())
-    wall = sum(entry["wall"] for entry in entries.values())
-    return {
-        "chapter": plan.chapter,
-        "experiment": plan.experiment,
-        "version": __version__,
-        "revision": revision(),
-        "seed": plan.seed,
-        "fingerprint": plan.fingerprint,
-        "differs": plan.differs,
-        "packages": {name: version(name) for name in PACKAGES},
-        "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
-        "python": platform.python_version(),
-        "wall": wall,
-        "steps": sum(entry["steps"] for entry in entries.values()),
-        "simulated": simulated,
-        "real_time_factor": simulated / wall if simulated and wall else None,
-        "cases": entries,
-    }
+def _run_entry(plan: Plan, entries: dict[str, CaseEntry], series: list[str]) -> RunEntry:
+    simulated = sum(entry.simulated for entry in entries.values())
+    wall = sum(entry.wall for entry in entries.values())
+    return RunEntry(
+        chapter=plan.chapter,
+        experiment=plan.experiment,
+        version=__version__,
+        revision=revision(),
+        seed=plan.seed,
+        contents=plan.contents,
+        presentation=plan.presentation,
+        differs=plan.differs,
+        series=series,
+        packages={name: version(name) for name in PACKAGES},
+        machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        python=platform.python_version(),
+        wall=wall,
+        steps=sum(entry.steps for entry in entries.values()),
+        simulated=simulated,
+        real_time_factor=simulated / wall if simulated and wall else None,
+        cases=entries,
+    )
 
 
 @cache
@@ -245,13 +286,6 @@ def revision() -> str | None:
         dirty = subprocess.run([*git, "status", "--porcelain", "--untracked-files=no"], capture_output=True, text=True)
         return head.stdout.strip() + ("+" if dirty.stdout.strip() else "")
     return None
-
-
-def _link(source: str | Path, target: str | Path) -> None:
-    try:
-        os.link(source, target)
-    except OSError:  # other file system
-        shutil.copy2(source, target)
 
 
 def _prune(plan: Plan) -> None:
@@ -268,18 +302,22 @@ def _prune(plan: Plan) -> None:
 
 
 def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progress: Progress | None = None) -> Outcome:
-    """Run what is missing, assemble what is complete; a failing case does not stop the others."""
+    """Run what is missing, assemble each experiment as its last case ends; a failing case does not stop the others."""
     progress = progress or Silent()
     outcome = Outcome(differs={plan.experiment: plan.differs for plan in plans if plan.chapter != chapters.OWN})
+    parents = {folder.parent for plan in plans for folder in (Path(plan.jobs[0].folder), plan.folder)}
+    for parent in parents:
+        remove_leftovers(parent)
     waiting: dict[str, set[str]] = {}
     todo: list[Job] = []
     for plan in plans:
-        for parent in (Path(plan.jobs[0].folder).parent, plan.folder.parent):
-            remove_leftovers(parent)
-        if not force and _up_to_date(plan):
+        if not force and up_to_date(plan):
             outcome.folders[plan.experiment] = plan.folder
             continue
-        missing = [job for job in plan.jobs if force or not (Path(job.folder) / "case.json").exists()]
+        missing = [job for job in plan.jobs if force or stored_case(job) is None]
+        for job in missing:
+            if Path(job.folder).exists() and not force:
+                progress.note(f"{job.name} is damaged in {Path(job.folder).parent}: run again")
         waiting[plan.experiment] = {job.case for job in missing}
         todo += missing
     if not waiting:
@@ -287,60 +325,72 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     by_name = {plan.experiment: plan for plan in plans}
     # An experiment of few cases has long ones: they begin, and the short ones of the others fill the gaps at the end.
     todo.sort(key=lambda job: len(by_name[job.experiment].jobs))
-    import dexrepro.report.style  # noqa: F401  imported once, before the processes fork
+    import dexrepro.physics.world  # noqa: F401  imported once, before the processes fork
 
-    with pool(workers, progress.listen, in_process=any(job.gui for job in todo)) as submit:
-        pending: dict[Future[Any], Job | Plan] = {submit(execute if force else complete, job): job for job in todo}
-        pending |= {submit(assemble, by_name[name]): by_name[name] for name, cases in waiting.items() if not cases}
-        progress.begin(len(todo))
-        while pending:
-            done, _ = wait(pending, timeout=0.2, return_when=FIRST_COMPLETED)
-            progress.refresh()
-            for future in done:
-                task = pending.pop(future)
-                name = task.name if isinstance(task, Job) else task.experiment
-                try:
-                    value = future.result()
-                except BrokenProcessPool:
-                    outcome.failures[name] = "its process was killed; the same command completes what is missing"
-                except BaseException as error:
-                    outcome.failures[name] = sentence(error)
-                    _keep_traceback(task, error)
-                else:
-                    if isinstance(task, Plan):
-                        outcome.folders[task.experiment] = task.folder
-                        progress.assembled(task.experiment)
-                        continue
+    here = any(job.gui or (start_method() != "fork" and "__main__." in str(job.config)) for job in todo)
+    try:
+        with Pool(workers, progress.report, here) as pool:
+            for job in todo:
+                pool.add(job, execute if force else complete, job, timeout=job.timeout)
+            for name in (name for name, cases in waiting.items() if not cases):
+                pool.add(by_name[name], assemble, by_name[name])
+            progress.begin(len(todo))
+            repeated: set[str] = set()
+            for task, value in pool.results():
+                plan = by_name[task.experiment]
+                if isinstance(value, Failure):
+                    name = task.name if isinstance(task, Job) else task.experiment
+                    outcome.failures[name] = _failed(task, value)
+                    if isinstance(task, Job):
+                        progress.failed(task.name, outcome.failures[name])
+                elif isinstance(task, Job):
                     progress.finished(task.name, value)
                     waiting[task.experiment].discard(task.case)
                     if not waiting[task.experiment]:
-                        plan = by_name[task.experiment]
-                        with contextlib.suppress(BrokenProcessPool):
-                            pending[submit(assemble, plan)] = plan
-                    continue
-                if isinstance(task, Job):
-                    progress.failed(task.name, outcome.failures[name])
+                        pool.add(plan, assemble, plan, first=True)
+                elif not value:
+                    outcome.folders[task.experiment] = task.folder
+                    progress.assembled(task.experiment)
+                elif task.experiment in repeated:
+                    outcome.failures[task.experiment] = f"{Path(value[0].folder).parent} does not keep what is written"
+                else:  # the sizes were right, the bytes are not
+                    repeated.add(task.experiment)
+                    waiting[task.experiment] = {job.case for job in value}
+                    for job in value:
+                        progress.note(f"{job.name} is damaged in {Path(job.folder).parent}: run again")
+                        pool.add(job, execute, job, timeout=job.timeout, first=True)
+    finally:
+        for parent in parents:  # of workers that were ended
+            remove_leftovers(parent)
     return outcome
 
 
-def _up_to_date(plan: Plan) -> bool:
+def up_to_date(plan: Plan) -> bool:
+    """Whether the result of a plan is there, whole, and made of the present values, code and packages."""
     try:
-        return bool(read_json(plan.folder / "run.json")["fingerprint"] == plan.fingerprint)
-    except (OSError, ValueError, KeyError):
+        run = read_json(plan.folder / "run.json")
+        same = run["contents"] == plan.contents and run["presentation"] == plan.presentation
+        same = same and run["version"] == __version__ and run["differs"] == plan.differs
+        same = same and all(run["packages"][name] == version(name) for name in NUMERICAL)
+        files = ("metrics.json", "claims.json", "config.yaml")
+        whole = all((plan.folder / name).stat().st_size for name in files)
+        return same and whole and all((plan.folder / "series" / name).exists() for name in run["series"])
+    except (OSError, ValueError, KeyError, TypeError):
         return False
 
 
-def sentence(error: BaseException) -> str:
-    """What went wrong, in one line."""
-    text = " ".join(str(error).split())
-    return text if isinstance(error, InputError) else f"{type(error).__name__}: {text}"
-
-
-def _keep_traceback(task: Job | Plan, error: BaseException) -> None:
-    folder = Path(task.folder if isinstance(task, Job) else task.jobs[0].folder).parent
-    name = task.case if isinstance(task, Job) else "assemble"
+def _failed(task: Job | Plan, failure: Failure) -> str:
+    """Keep why a task failed beside the cached cases; the sentence about it, which says whether it did so before."""
+    job = task if isinstance(task, Job) else task.jobs[0]
+    path = Path(job.folder).parent / f"{task.case if isinstance(task, Job) else 'assemble'}.error.txt"
+    text, before = failure.sentence, ""
+    with contextlib.suppress(OSError, UnicodeError):
+        before = path.read_text(encoding="utf-8")
+    if failure.exit is not None and before.startswith(job.content):
+        text = f"{text.removesuffix(f'; {COMPLETES}')}, as it did before"
     with contextlib.suppress(OSError):
-        (folder / f"{name}.error.txt").write_text("".join(traceback.format_exception(error)))
+        write_text(path, f"{job.content if failure.exit is not None else ''}\n{text}\n{failure.traceback}")
+    return text
 
 
 def summary_rows(outcome: Outcome) -> list[dict[str, Any]]:

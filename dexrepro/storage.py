@@ -1,17 +1,15 @@
-"""Recordings, metrics and results as files: written to a temporary sibling and renamed, so whole or absent."""
+"""Files that are whole or absent, and locks: every text is UTF-8, and what counts is on the disk before it counts."""
 
 from __future__ import annotations
 
 import contextlib
-import fcntl
-import gzip
 import hashlib
 import json
 import math
 import os
-import platform
+import re
 import shutil
-import tempfile
+import uuid
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -19,47 +17,83 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import yaml
+from filelock import FileLock, Timeout
 
 from dexrepro.experiment import Recording
+from dexrepro.recordings import load_recording, read_frame
+
+_PART = re.compile(r"\.(?P<target>.+)-[0-9a-f]{12}\.part")
 
 
 @contextlib.contextmanager
 def whole_folder(target: Path) -> Iterator[Path]:
-    """A new folder that replaces ``target`` when the block ends well and leaves no trace when it does not."""
+    """A new folder that replaces ``target`` when the block ends well and leaves no trace when it does not.
+
+    A lock beside it, which the system frees when this process dies, tells others that it is being worked on.
+    """
     target.parent.mkdir(parents=True, exist_ok=True)
-    folder = Path(tempfile.mkdtemp(prefix=f".{target.name}-{_owner()}-", dir=target.parent))
-    folder.chmod(0o755)
+    folder = target.parent / f".{target.name}-{uuid.uuid4().hex[:12]}.part"
+    old = folder.with_suffix(".old")
+    with FileLock(folder.with_suffix(".lock")):
+        try:
+            folder.mkdir()
+            yield folder
+            with locked(target.parent):
+                if target.exists():
+                    target.rename(old)
+                folder.rename(target)
+        finally:
+            _clear(folder, old, target)
+
+
+def _clear(folder: Path, old: Path, target: Path) -> None:
+    """Remove what is left of a replacement; put back the old folder where the new one has not taken its place."""
+    if old.exists() and not target.exists():
+        old.rename(target)
+    for path in (folder, old):
+        shutil.rmtree(path, ignore_errors=True)
+    with contextlib.suppress(OSError):  # where an open file cannot be removed, the next run does it
+        folder.with_suffix(".lock").unlink(missing_ok=True)
+
+
+def remove_leftovers(parent: Path) -> None:
+    """Clear what processes that died have left in a folder, on whatever machine they were."""
+    for path in {
+        *parent.glob(".*.part"),
+        *(p.with_suffix(".part") for k in ("lock", "old") for p in parent.glob(f".*.{k}")),
+    }:
+        if (match := _PART.fullmatch(path.name)) is None:
+            continue
+        with contextlib.suppress(Timeout, OSError), FileLock(path.with_suffix(".lock"), timeout=0), locked(parent):
+            _clear(path, path.with_suffix(".old"), parent / match["target"])
+    for path in parent.glob(".*.claim"):
+        with contextlib.suppress(Timeout, OSError), FileLock(path, timeout=0):
+            path.unlink(missing_ok=True)
+
+
+def sync(folder: Path) -> None:
+    """Have the disk hold the files of a folder: after a loss of power, what counts as finished is there."""
+    for path in (path for path in folder.rglob("*") if path.is_file()):
+        with contextlib.suppress(OSError), open(path, "rb+") as file:
+            os.fsync(file.fileno())
+
+
+def copy(source: str | Path, target: str | Path) -> None:
+    """Copy a file with its times; where the file system can share the content until one changes, it does."""
+    source, target = Path(source), Path(target)
     try:
-        yield folder
-        with locked(target.parent):
-            old = folder.with_name(folder.name + "-old")
-            if target.exists():
-                target.rename(old)
-            folder.rename(target)
-        shutil.rmtree(old, ignore_errors=True)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def _owner() -> str:
-    """Process and machine: several machines may share a folder."""
-    return f"{os.getpid()}@{platform.node().replace('-', '_')}"
-
-
-def remove_leftovers(folder: Path) -> None:
-    """Delete the temporary folders of processes of this machine that no longer exist."""
-    machine = _owner().partition("@")[2]
-    for path in folder.glob(f".*-*@{machine}-*"):
-        pid = path.name.removesuffix("-old").rsplit("-", 2)[-2].partition("@")[0]
-        if path.is_dir() and pid.isdigit() and not Path(f"/proc/{pid}").exists() and Path("/proc/self").exists():
-            shutil.rmtree(path, ignore_errors=True)
+        with open(source, "rb") as old, open(target, "wb") as new:
+            while os.copy_file_range(old.fileno(), new.fileno(), 1 << 30):
+                pass
+        shutil.copystat(source, target)
+    except (AttributeError, OSError):  # not on this system, or not between these file systems
+        shutil.copy2(source, target)
 
 
 @contextlib.contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Exclude other processes that use the same lock; the kernel frees it when a process dies."""
-    with open(folder / ".lock", "w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
+    """Exclude other processes that use the same lock; the system frees it when a process dies."""
+    with FileLock(folder / ".lock"):
         yield
 
 
@@ -67,27 +101,56 @@ def locked(folder: Path) -> Iterator[None]:
 def claimed(folder: Path, name: str, wait: bool = True) -> Iterator[bool]:
     """Whether this process alone works on the thing of that name, among all that share the folder, on any machine.
 
-    The kernel frees a claim when its process dies. A process holds one at a time: closing the file ends them all.
+    The system frees a claim when its process dies.
     """
-    position = int(hashlib.sha1(name.encode()).hexdigest()[:15], 16)
-    with open(folder / ".claims", "a") as file:
-        try:
-            fcntl.lockf(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB), 1, position)
-        except (BlockingIOError, PermissionError):
-            yield False
-        else:
+    path = folder / f".{name}.claim"
+    try:
+        with FileLock(path, timeout=-1 if wait else 0):
             yield True
+            with contextlib.suppress(OSError):
+                path.unlink()  # who waits for it notices, and makes a new one
+    except Timeout:
+        yield False
+
+
+def read_text(path: Path, limit: int = 1 << 26) -> str:
+    """The content of a text file. Raises ValueError beyond ``limit`` bytes: nothing written here is so large."""
+    with open(path, "rb") as file:
+        content = file.read(limit + 1)
+    if len(content) > limit:
+        raise ValueError(f"it is larger than {limit >> 20} MB")
+    return content.decode()
 
 
 def read_yaml(path: Path) -> Any:
-    """The content of a YAML file, parsed in C where the library has it."""
-    return yaml.load(path.read_text(), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    """The content of a YAML file, parsed in C where the library has it; ValueError where aliases make it explode."""
+    try:
+        data = yaml.load(read_text(path), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+    _count(data)
+    return data
+
+
+def _count(data: Any, limit: int = 1_000_000) -> None:
+    """Raise ValueError where nested data, aliases written out, hold more than ``limit`` values."""
+    todo, seen = [iter([data])], 0
+    while todo:
+        for item in todo[-1]:
+            seen += 1
+            if seen > limit or len(todo) > 200:
+                raise ValueError("it is nested too deeply or stands for more than a million values")
+            if isinstance(item, Mapping | list):
+                todo.append(iter(item.values() if isinstance(item, Mapping) else item))
+                break
+        else:
+            todo.pop()
 
 
 def write_yaml(path: Path, data: Any) -> None:
     """Write YAML, keys in the order given."""
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
-    path.write_text(yaml.dump(finite(data), Dumper=dumper, sort_keys=False, allow_unicode=True))
+    path.write_text(yaml.dump(finite(data), Dumper=dumper, sort_keys=False, allow_unicode=True), encoding="utf-8")
 
 
 def write_json(path: Path, data: Any) -> None:
@@ -97,13 +160,23 @@ def write_json(path: Path, data: Any) -> None:
 
 def write_text(path: Path, text: str) -> None:
     """Write a file in one move: the old text or the new, never a part."""
-    temporary = path.with_name(f".{path.name}-{_owner()}")
-    temporary.write_text(text)
-    temporary.replace(path)
+    temporary = path.with_name(f".{path.name}-{uuid.uuid4().hex[:12]}")
+    try:
+        with open(temporary, "w", encoding="utf-8", errors="backslashreplace") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def read_json(path: Path) -> Any:
-    return json.loads(path.read_text())
+    """The content of a JSON file. Raises ValueError where it is none."""
+    try:
+        return json.loads(read_text(path))
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
 
 
 def finite(data: Any) -> Any:
@@ -122,84 +195,6 @@ def finite(data: Any) -> Any:
 def digest_of(data: Any) -> str:
     """A hash that changes with any value in the data."""
     return hashlib.sha1(json.dumps(finite(data), sort_keys=True, default=str).encode()).hexdigest()
-
-
-# ------------------------------------------------------------------------------------------------------ recordings
-
-
-def save_recording(recording: Recording, folder: Path, case: str, rate: float) -> None:
-    """Write a recording's series at ``rate`` [Hz], its frames and its images below ``folder``."""
-    folder.mkdir(parents=True, exist_ok=True)
-    if recording.series:
-        kept = _thinned(recording, rate)
-        columns: dict[str, Any] = {}
-        for name, values in kept.items():
-            if values.ndim == 1:
-                columns[name] = values
-            else:
-                flat = values.reshape(len(values), -1)
-                columns.update({f"{name}[{index}]": flat[:, index] for index in range(flat.shape[1])})
-        _write_frame(pd.DataFrame(columns), folder / f"{case}.csv.gz")
-    for name, frame in recording.frames.items():
-        _write_frame(frame, folder / f"{case}.{name}.csv.gz")
-    if recording.images:
-        import matplotlib.image
-
-        for name, image in recording.images.items():
-            matplotlib.image.imsave(folder / f"{case}.{name}.png", image)
-
-
-def load_recording(folder: Path, case: str, status: str = "finished") -> Recording:
-    """Read back what save_recording wrote (series at the kept rate)."""
-    recording = Recording(status=status)
-    path = folder / f"{case}.csv.gz"
-    if path.exists():
-        recording.series = _unflattened(_read_frame(path))
-    for path in sorted(folder.glob(f"{case}.*.csv.gz")):
-        recording.frames[path.name[len(case) + 1 : -len(".csv.gz")]] = _read_frame(path)
-    for path in sorted(folder.glob(f"{case}.*.png")):
-        import matplotlib.image
-
-        image = matplotlib.image.imread(path)
-        recording.images[path.name[len(case) + 1 : -len(".png")]] = (image[..., :3] * 255).round().astype(np.uint8)
-    return recording
-
-
-def _thinned(recording: Recording, rate: float) -> dict[str, np.ndarray]:
-    """Every k-th sample, the first and the last among them."""
-    time = recording.time
-    if len(time) < 3 or not rate:
-        return recording.series
-    stride = max(1, round(1 / (rate * (time[-1] - time[0]) / (len(time) - 1))))
-    index = np.arange(0, len(time), stride)
-    if index[-1] != len(time) - 1:
-        index = np.append(index, len(time) - 1)
-    return {name: np.asarray(values)[index] for name, values in recording.series.items()}
-
-
-def _unflattened(frame: pd.DataFrame) -> dict[str, np.ndarray]:
-    groups: dict[str, list[str]] = {}
-    for column in frame.columns:
-        groups.setdefault(column.partition("[")[0], []).append(column)
-    return {
-        name: frame[columns[0]].to_numpy() if columns == [name] else frame[columns].to_numpy()
-        for name, columns in groups.items()
-    }
-
-
-def _write_frame(frame: pd.DataFrame, path: Path) -> None:
-    values = frame.to_numpy() if (frame.dtypes == np.float64).all() else None
-    if values is not None and np.isfinite(values).all():  # several times as fast as to_csv, to the same text
-        line = ",".join(["%.9g"] * values.shape[1]) + "\n"
-        text = frame[:0].to_csv(index=False) + "".join([line % tuple(row) for row in values.tolist()])
-    else:
-        text = frame.to_csv(index=False, float_format="%.9g")
-    with open(path, "wb") as raw, gzip.GzipFile(fileobj=raw, mode="wb", compresslevel=4, mtime=0) as file:
-        file.write(text.encode())
-
-
-def _read_frame(path: Path) -> pd.DataFrame:
-    return pd.read_csv(path, keep_default_na=True)
 
 
 # --------------------------------------------------------------------------------------------------------- results
@@ -225,7 +220,7 @@ class Result:
 
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
-        return {path.stem: _read_frame(path) for path in sorted((self.folder / "tables").glob("*.csv"))}
+        return {path.stem: read_frame(path) for path in sorted((self.folder / "tables").glob("*.csv"))}
 
     @property
     def figures(self) -> dict[str, Path]:

@@ -13,7 +13,6 @@ import json
 import re
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import as_completed
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -24,6 +23,8 @@ from scipy import stats
 
 from dexrepro import chapters
 from dexrepro.baselines import baseline_dir
+from dexrepro.case import generator, live
+from dexrepro.case import run as run_case
 from dexrepro.claims import Claim, robustness
 from dexrepro.config import (
     InputError,
@@ -35,9 +36,14 @@ from dexrepro.config import (
     resolved_block,
 )
 from dexrepro.experiment import Config, Metrics
-from dexrepro.pool import pool
-from dexrepro.runner import flat, generator, live, summarise
+from dexrepro.measures import binomial_interval
+from dexrepro.pool import COMPLETES, Failure, Pool
+from dexrepro.runner import flat, summarise
 from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
+
+
+class SamplesFailed(Exception):
+    """Samples of a study are missing; the sentence says why, and the others are stored."""
 
 
 def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list[str]:
@@ -46,6 +52,8 @@ def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list
     by_id = {item.id: item for item in loaded.claims if item.predicate}
     if claim is None:
         about = {item.experiment for item in by_id.values()}
+        if without := [name for name in only if name not in about]:
+            raise InputError(f"{', '.join(without)} of chapter {chapter}: there is no claim that a study could test")
         return [e.name for e in loaded.experiments if e.name in about and (not only or e.name in only)]
     if claim not in by_id:
         raise InputError(f"unknown claim '{claim}' in chapter {chapter}: {nearest(claim, by_id)}")
@@ -111,8 +119,7 @@ def evaluate(chapter: str, experiment: str, index: int) -> dict[str, Any]:
     for case in _cases_of(claims, cases):
         try:
             config = live({**cases[case], "perturbation": 0.0, "seed": seed, "case": case})
-            recording = definition.simulation.simulate(config, lambda purpose: generator(seed, experiment, purpose))
-            metrics[case] = definition.simulation.measure(recording, config)
+            metrics[case] = run_case(definition, config, seed)[1]
         except Exception as problem:
             errors.append(f"{case}: {type(problem).__name__}: {problem}")
     if len(metrics) == len(cases):
@@ -158,7 +165,7 @@ def run(
     """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path.
 
     ``update`` renews the study that is shipped. Raises InputError where a summary of more samples, of another
-    configuration, would be replaced.
+    configuration, would be replaced, and SamplesFailed, at the end, where a sample could not be made.
     """
     target = summary_file(experiment, results, update)
     for folder in (target.parent, _folder(results)):
@@ -171,14 +178,20 @@ def run(
             f"fewer do not replace; ask for {before} or more, or for another folder with results=DIR"
         )
     deadline = time.time() + 3600 * hours if hours else float("inf")
-    with pool(workers) as submit:
-        for future in as_completed([submit(contribute, chapter, experiment, i, results, deadline) for i in missing]):
-            future.result()
+    with Pool(workers) as pool:
+        for index in missing:
+            pool.add(index, contribute, chapter, experiment, index, results, deadline)
+        failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
     with locked(_folder(results)):  # who ends last sees every sample
         entries = list(_kept(chapter, experiment, results).values())
         if len(entries) >= _size(target):  # fewer where the hours are over
             write_text(_lines(target), "".join(map(_line, entries)))
             write_json(target, summary(chapter, experiment, entries))
+    if failed:
+        index, reason = failed[0]
+        more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
+        reason = reason.removesuffix(f"; {COMPLETES}")
+        raise SamplesFailed(f"sample {index}{more} of {experiment} failed: {reason}; {COMPLETES}")
     return target
 
 
@@ -236,7 +249,7 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
             continue
         margins = np.array([margin for margin, _ in pairs])
         holds = int(np.sum(margins > 0))
-        low, high = stats.binomtest(holds, len(pairs)).proportion_ci(method="wilson")
+        low, high = binomial_interval(holds, len(pairs))
         parameter, correlation = _most_influential(margins, [values for _, values in pairs])
         claims[claim.id] = {
             "samples": len(pairs), "holds": holds, "share": holds / len(pairs), "low": low, "high": high,

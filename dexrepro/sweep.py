@@ -53,7 +53,7 @@ def enter_launch_folder() -> None:
     """Work where the sweep was started, the user's own classes in reach, wherever the launcher put this process."""
     os.chdir(HydraConfig.get().runtime.cwd)
     if "" not in sys.path:
-        sys.path.insert(0, "")
+        sys.path.append("")
 
 
 def job_overrides() -> tuple[list[str], str | None]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from dexrepro import baselines
+from dexrepro import baselines, cli
 from dexrepro.config import InputError
 from dexrepro.storage import read_json, write_json
 
@@ -27,8 +29,8 @@ def edit(path: Path, change) -> None:
 
 def test_a_fresh_update_agrees_with_its_own_results(stored: Path) -> None:
     report = baselines.check_chapter("90", RESULTS)
-    assert baselines.is_ok(report)
-    assert report["compared"] == len(read_json(stored)["metrics"]) > 10
+    assert report.ok
+    assert report.compared == len(read_json(stored)["metrics"]) > 10
 
 
 def test_counts_are_exact_and_numbers_have_a_tolerance_that_follows_their_sensitivity(stored: Path) -> None:
@@ -47,11 +49,101 @@ def test_drift_missing_new_and_changed_verdicts_are_told_apart(stored: Path) -> 
 
     edit(stored, change)
     report = baselines.check_chapter("90", RESULTS)
-    assert [entry["name"] for entry in report["drifted"]] == ["decay.plain.final"]
-    assert report["missing"] == ["decay.gone"]
-    assert report["new"] == ["decay.fast.final"]
-    assert report["verdict_changed"] == ["C90.01"]
-    assert not baselines.is_ok(report)
+    assert [entry.name for entry in report.drifted] == ["decay.plain.final"]
+    assert report.missing == ["decay.gone"]
+    assert report.new == ["decay.fast.final"]
+    assert report.verdict_changed == ["C90.01"]
+    assert not report.ok
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda data: data["metrics"]["decay.plain.final"].update(value=7.0),
+        lambda data: data["metrics"].update({"decay.gone": {"value": 1.0, "rtol": 1e-3, "atol": 0.0}}),
+        lambda data: data["metrics"].pop("decay.fast.final"),
+        lambda data: data["claims"].update({"C90.01": "not reproduced"}),
+        lambda data: data["claims"].update({"C90.99": "reproduced"}),
+        lambda data: data["claims"].pop("C90.02"),
+        lambda data: data["tables"].pop("T90.1"),
+        lambda data: data["tables"].update({"T90.2": {"case": ["plain"]}}),
+        lambda data: data["tables"]["T90.1"]["final"].__setitem__(0, 1e3 * data["tables"]["T90.1"]["final"][0]),
+        lambda data: data["tables"]["T90.1"]["case"].__setitem__(0, "plane"),
+        lambda data: [column.pop() for column in data["tables"]["T90.1"].values()],
+        lambda data: data["tables"].update({"T90.1": dict(reversed(data["tables"]["T90.1"].items()))}),
+    ],
+)
+def test_each_difference_alone_is_one_too_many(stored: Path, change: Callable[[dict[str, Any]], object]) -> None:
+    edit(stored, change)
+    assert not baselines.check_chapter("90", RESULTS).ok
+    assert cli.main(["check"]) == 1
+
+
+def test_a_table_may_move_as_far_as_the_metric_it_shows() -> None:
+    metrics = {
+        "e.c.loose": {"value": 0.0123, "rtol": 0.5, "atol": 0.0},
+        "e.c.n": {"value": 20, "rtol": 0.0, "atol": 10},
+    }
+    same = baselines._same_cell
+    assert same(15.0, 12.3, 12.3, metrics), "of the loose metric, in another unit"
+    assert not same(19.0, 12.3, 12.3, metrics)
+    assert same(26, 20, 20.0, metrics)
+    assert not same(31, 20, 20.0, metrics)
+    assert same(1.02, 1.0, 1.0, {})
+    assert not same(1.2, 1.0, 1.0, {})
+    assert not same("2", 2, 2.0, {})
+    assert same(None, None, 0.0, {})
+    assert not same(None, 1.0, 1.0, {})
+    assert not same(0.5, 0.0, 1.0, {})
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda data: data["metrics"]["decay.plain.final"].update(rtol=1.5), "rtol = 1.5 is not allowed"),
+        (lambda data: data["metrics"]["decay.plain.final"].update(atol=-1), "atol = -1 is not allowed"),
+        (lambda data: data["metrics"]["decay.plain.final"].update(rtol=None), "rtol = None is not allowed"),
+        (lambda data: data["metrics"]["decay.plain.final"].update(value="1"), "value = '1' must be a number"),
+        (lambda data: data["metrics"].update({"decay.x": 3}), "no baseline"),
+        (lambda data: data["metrics"]["decay.plain.final"].pop("atol"), "'atol'"),
+        (lambda data: data.pop("metrics") and data.update(numbers={}), "numbers"),
+    ],
+)
+def test_a_baseline_that_guards_nothing_is_refused(
+    stored: Path, change: Callable[[dict[str, Any]], object], sentence: str
+) -> None:
+    edit(stored, change)
+    with pytest.raises(InputError) as caught:
+        baselines.check_chapter("90", RESULTS)
+    assert sentence in str(caught.value)
+    assert str(stored) in str(caught.value)
+
+
+def test_a_metric_near_zero_for_its_sensitivity_gets_an_absolute_tolerance() -> None:
+    entry = baselines._fresh_entry(1e-5, [0.02])
+    assert entry["rtol"] <= 1
+    assert entry["atol"] == pytest.approx(0.2, rel=0.01)
+
+
+def test_check_writes_nothing_and_reads_what_it_may_not_write(stored: Path, toy: Path) -> None:
+    before = sorted(toy.rglob("*"))
+    for folder in [RESULTS, *RESULTS.rglob("*")]:
+        folder.chmod(0o555 if folder.is_dir() else 0o444)
+    assert cli.main(["check"]) == 0
+    assert cli.main(["check", "results=results"]) == 0
+    assert sorted(toy.rglob("*")) == before
+    for folder in [RESULTS, *RESULTS.rglob("*")]:
+        folder.chmod(0o755 if folder.is_dir() else 0o644)
+
+
+def test_check_says_what_was_made_by_another_configuration_or_code(
+    stored: Path, toy_book: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert not baselines.check_chapter("90", RESULTS).outdated
+    config = toy_book / "chapter90/decay/config.yaml"
+    config.write_text(config.read_text().replace("start: 1.0", "start: 1.5"))
+    assert cli.main(["check"]) == 0, "the numbers are those stored"
+    assert "out of date: decay: plain and 4 more cases of another configuration" in capsys.readouterr().out
 
 
 def test_an_update_refuses_a_changed_verdict_unless_it_is_accepted(stored: Path) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from dexrepro import chapters
 from dexrepro.config import (
+    SETTINGS,
     InputError,
     Provenance,
     _names,
@@ -77,18 +78,7 @@ def test_the_parts_of_a_chapter_fit_together(chapter: str) -> None:
     loaded = chapters.load(chapter)
     composed = compose_chapter(chapter)
     names = {experiment.name for experiment in loaded.experiments}
-    blocks = set(composed) - {
-        "shared",
-        "only",
-        "figure",
-        "seed",
-        "results",
-        "workers",
-        "force",
-        "quiet",
-        "gui",
-        "hydra",
-    }
+    blocks = set(composed) - {"shared", "hydra", *SETTINGS}
     assert blocks == names
     assert len({claim.id for claim in loaded.claims}) == len(loaded.claims)
     figures = [figure for experiment in loaded.experiments for figure in experiment.figures]

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 import dexrepro
+from dexrepro.case import generator
 from dexrepro.config import InputError
 from dexrepro.plan import own_digest, plan_chapter
-from dexrepro.runner import KEPT, complete, generator, run_plans
+from dexrepro.runner import KEPT, complete, run_plans
 from dexrepro.storage import Result
 
 

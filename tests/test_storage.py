@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
 import signal
 from pathlib import Path
 
@@ -12,7 +11,8 @@ import pandas as pd
 import pytest
 
 from dexrepro.experiment import Recording
-from dexrepro.storage import _owner, claimed, load_recording, remove_leftovers, save_recording, whole_folder
+from dexrepro.recordings import load_recording, save_recording
+from dexrepro.storage import claimed, locked, remove_leftovers, whole_folder
 
 
 def claim_and_wait(folder: Path, ready) -> None:
@@ -36,18 +36,59 @@ def test_a_claim_excludes_others_until_its_process_dies(tmp_path: Path) -> None:
     other.join()
 
 
-def test_leftovers_of_dead_processes_go_and_those_of_other_machines_stay(tmp_path: Path) -> None:
-    machine = _owner().partition("@")[2]
-    dead, elsewhere = tmp_path / f".case-999999999@{machine}-x1", tmp_path / ".case-999999999@elsewhere-x1"
-    dead.mkdir()
-    elsewhere.mkdir()
-    with whole_folder(tmp_path / "case") as alive:
-        remove_leftovers(tmp_path)
-        assert alive.exists()
-    assert not dead.exists()
-    assert elsewhere.exists()
-    assert (tmp_path / "case").exists()
-    assert os.getpid() == int(_owner().partition("@")[0])
+def replace_and_wait(target: Path, ready, step: str) -> None:
+    if step == "between the renames":
+        rename = Path.rename
+
+        def first_only(path: Path, other: Path) -> Path:
+            renamed = rename(path, other)
+            ready.set()
+            signal.pause()
+            return renamed
+
+        Path.rename = first_only  # type: ignore[method-assign]
+    with whole_folder(target) as folder:
+        (folder / "new").touch()
+        if step == "while it is filled":
+            ready.set()
+            signal.pause()
+
+
+@pytest.mark.parametrize("step", ["while it is filled", "between the renames"])
+def test_a_process_killed_while_it_replaces_a_folder_loses_nothing(tmp_path: Path, step: str) -> None:
+    with whole_folder(tmp_path / "case") as folder:
+        (folder / "old").touch()
+    ready = multiprocessing.Event()
+    other = multiprocessing.Process(target=replace_and_wait, args=(tmp_path / "case", ready, step))
+    other.start()
+    assert ready.wait(20)
+    remove_leftovers(tmp_path)
+    assert list(tmp_path.glob(".*.part")), "it is alive"
+    other.kill()
+    other.join()
+    remove_leftovers(tmp_path)
+    assert [path.name for path in (tmp_path / "case").iterdir()] == ["old"]
+    assert {path.name for path in tmp_path.iterdir()} <= {"case", ".lock"}
+
+
+def test_an_interrupt_between_the_renames_puts_the_old_folder_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with whole_folder(tmp_path / "case") as folder:
+        (folder / "old").touch()
+    rename = Path.rename
+
+    def interrupted(path: Path, other: Path) -> Path:
+        if path.suffix == ".part":
+            raise KeyboardInterrupt
+        return rename(path, other)
+
+    monkeypatch.setattr(Path, "rename", interrupted)
+    with pytest.raises(KeyboardInterrupt), whole_folder(tmp_path / "case"):
+        pass
+    assert [path.name for path in (tmp_path / "case").iterdir()] == ["old"]
+    with locked(tmp_path):
+        assert {path.name for path in tmp_path.iterdir()} == {"case", ".lock"}
 
 
 @pytest.mark.parametrize("columns", [["a", "b"], [1, 2], ["with, comma", "plain"]])

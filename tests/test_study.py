@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,7 +15,7 @@ from conftest import ROOT
 from dexrepro import study
 from dexrepro.claims import Claim, less
 from dexrepro.config import InputError
-from dexrepro.pool import _submit_here
+from dexrepro.pool import Pool
 from dexrepro.storage import read_json
 
 RESULTS = Path("results")
@@ -93,7 +92,7 @@ def test_shipped_samples_count_and_those_of_another_configuration_do_not(
     (RESULTS / "studies").rename(folder / "shipped/study")
     evaluated: list[int] = []
     evaluate = study.evaluate
-    monkeypatch.setattr(study, "pool", lambda workers: nullcontext(_submit_here))
+    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
     monkeypatch.setattr(study, "evaluate", lambda *which: evaluated.append(which[-1]) or evaluate(*which))
     study.run("90", "decay", 5, RESULTS)
     assert evaluated == [3, 4]

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from dexrepro.arrays import Array
 from dexrepro.experiment import Recording
 from dexrepro.physics.elements import Element, Ends
-from dexrepro.physics.plant import Command, Controller, RigidBody, SimulatedArm
+from dexrepro.physics.plant import Command, Controller, NotFinite, NotTorque, RigidBody, SimulatedArm
 
 Probe = Callable[[], ArrayLike]
 GUARD = 1e3  # sum of an arm's joint angles and rates [rad, rad/s] beyond which a run has diverged
@@ -44,6 +44,10 @@ class Progress:
 
 class Diverged(RuntimeError):
     """A joint left every physical range; the sentence says when, which and by how much."""
+
+
+class LawFailed(RuntimeError):
+    """A law raised an error or gave something that is no torque; the sentence names it, the time and the value."""
 
 
 class Recorder:
@@ -122,7 +126,14 @@ def run(
             status = trouble
             break
         sample = k % every == 0
-        scene.act(now, sample)
+        try:
+            scene.act(now, sample)
+        except LawFailed as failure:
+            if on_divergence == "raise" or not isinstance(failure.__cause__, NotFinite):
+                raise
+            scene.record(now)
+            status, done = str(failure), k + 1
+            break
         if k % record_every == 0:
             scene.record(now)
         reason = stop(now) if stop is not None and sample else None
@@ -196,20 +207,26 @@ class _Scene:
             for apply in self._forces:
                 apply(now)
         for arm, controller in self._driven:
-            if sample:
-                answer = self._commands[arm.name] = controller(arm.observe(now, True))
-                if callable(answer):
-                    answer = answer(arm.sense)
-            else:
-                answer = self._commands[arm.name]
-                if callable(answer):
-                    answer = answer(arm.observe(now, False))
-                elif type(answer) is not tuple:
-                    continue
-            if type(answer) is tuple:
-                arm.command(answer[0], answer[1], self._step)
-            else:
-                arm.command(answer, None, self._step)
+            try:
+                if sample:
+                    answer = self._commands[arm.name] = controller(arm.observe(now, True))
+                    if callable(answer):
+                        answer = answer(arm.sense)
+                else:
+                    answer = self._commands[arm.name]
+                    if callable(answer):
+                        answer = answer(arm.observe(now, False))
+                    elif type(answer) is not tuple:
+                        continue
+                if type(answer) is tuple:
+                    arm.command(answer[0], answer[1], self._step)
+                else:
+                    arm.command(answer, None, self._step)
+            except (TypeError, ValueError, LookupError, AttributeError, ArithmeticError) as error:
+                what = " ".join(str(error).split())
+                kind = "" if isinstance(error, NotTorque) else f"{type(error).__name__}: "
+                name = _name_of(controller)
+                raise LawFailed(f"the law {name} of arm '{arm.name}' failed at {now:.4g} s: {kind}{what}") from error
 
     def step(self) -> None:
         for arm in self._arms:
@@ -244,6 +261,12 @@ class _Scene:
         channels += [(f"{name}.pose", 7) for name in self._world.moving]
         channels += [(f"{element.name}.{name}", 0) for element in self._elements for name in element.channels()]
         return self._recorder.series(channels + self._probes.channels)
+
+
+def _name_of(controller: Controller) -> str:
+    """The class of the law that a controller carries out."""
+    law = getattr(controller, "law", controller)
+    return str(getattr(law, "__qualname__", type(law).__name__))
 
 
 def _diverged(arm: SimulatedArm, now: float) -> str:

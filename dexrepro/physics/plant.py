@@ -24,6 +24,14 @@ from dexrepro.robots.planar import PlanarTip
 from dexrepro.robots.rotations import rotated
 
 
+class NotTorque(ValueError):
+    """What a law gave is no torque of its arm; the sentence shows the value."""
+
+
+class NotFinite(NotTorque):
+    """A law has become undefined."""
+
+
 class Point:
     """A place fixed in the world."""
 
@@ -242,10 +250,21 @@ class SimulatedArm(Point):
         return sense
 
     def command(self, torque: Torque, damping: Torque | None, step: float) -> None:
-        """Set this step's joint torque [N m], with damping [N m s/rad] applied implicitly, within the effort limits."""
+        """Set this step's joint torque [N m], with damping [N m s/rad] applied implicitly, within the effort limits.
+
+        Raises NotTorque.
+        """
         if damping is not None:
             torque = self._damped(np.asarray(torque, dtype=float), damping, step)
         torque = torque.tolist() if isinstance(torque, np.ndarray) else torque
+        try:  # a sum is cheap and is not finite if any of its terms is not
+            finite, right = -np.inf < sum(torque) < np.inf, len(torque) == self.dof
+        except TypeError:
+            finite = right = False
+        if not (finite and right):
+            self.torque = torque if right else self._zeros
+            kind = NotFinite if right else NotTorque
+            raise kind(f"it gave {str(torque)[:80]}, and a torque is {self.dof} finite numbers [N m]")
         if self.limits is not None:
             torque = [-top if t < -top else top if t > top else t for t, top in zip(torque, self.limits)]
         self.torque = torque

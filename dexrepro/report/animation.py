@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from dexrepro import chapters
-from dexrepro.config import InputError, nearest
+from dexrepro.case import live, refuse_foreign, targets
+from dexrepro.config import InputError, compose_chapter, nearest
 from dexrepro.experiment import Config, Experiment, Film, Recording
 from dexrepro.physics import rendering
 from dexrepro.physics.world import World
+from dexrepro.recordings import load_recording
 from dexrepro.report import style
 from dexrepro.report.damage import check_result
-from dexrepro.runner import live
-from dexrepro.storage import load_recording, read_json, read_yaml
+from dexrepro.storage import read_json, read_yaml
 
 SIZE = (400, 330)
 FRAMES = 60  # at the most
@@ -29,18 +29,18 @@ COLOURS = 96
 MARGIN = 24  # pixels above and below the line that marks the instant
 
 
-def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
+def render(folder: Path, case: str | None = None, kind: str = "gif", allow: Sequence[str] = ()) -> Path:
     """Write ``animation/<case>.<kind>`` and a still ``<case>.png`` into a result folder; returns the animation's path.
 
     The module's ``FILM`` says which case is shown, how it is looked at and what is drawn alongside; another case is
-    shown in the same way. Raises InputError where there is no result or a damaged one, no scene, no such
-    case, or no encoder for MP4.
+    shown in the same way. A result is data: of what its config.yaml names, only what this package's library or its
+    configuration has is built, and what the modules ``allow`` hold. Raises InputError where there is no result, a
+    damaged one or one that names other code, no scene, no such case, or no encoder for MP4.
     """
     if not (folder / "run.json").exists():
         raise InputError(f"{folder} holds no result (no run.json)")
-    check_result(folder, "config.yaml", series=True)
+    experiment = check_result(folder, "config.yaml", series=True)
     run = read_json(folder / "run.json")
-    experiment = chapters.load(run["chapter"]).experiment(run["experiment"])
     if not experiment.function("scene"):
         raise InputError(f"experiment '{experiment.name}' has no scene to render")
     if kind == "mp4" and not shutil.which("ffmpeg"):
@@ -50,10 +50,18 @@ def render(folder: Path, case: str | None = None, kind: str = "gif") -> Path:
         raise InputError(f"unknown case '{case}' of {experiment.name}: {nearest(case, cases)}")
     chosen = case or (experiment.film.case if experiment.film and experiment.film.case in cases else None)
     recording, chosen = _recording(folder, experiment, [chosen] if chosen else list(cases))
-    raw = read_yaml(folder / "config.yaml")["cases"][chosen]
+    raw = read_yaml(folder / "config.yaml").get("cases", {}).get(chosen)
+    if not isinstance(raw, dict):
+        raise InputError(f"{folder / 'config.yaml'} has no configuration of the case '{chosen}'")
     target = folder / "animation" / f"{chosen}.{kind}"
     target.parent.mkdir(exist_ok=True)
     raw |= {"law": None} if "law" in raw else {}  # a scene needs none, and the user's may be in another folder
+    ours = set(targets(compose_chapter(run["chapter"])))
+    refuse_foreign(
+        {"cases": {chosen: raw}},
+        str(folder / "config.yaml"),
+        lambda target: target in ours or any(target.startswith(f"{module}.") for module in allow),
+    )
     frames = list(_frames(experiment, live(raw), recording))
     frames[len(frames) // 2].save(target.with_suffix(".png"), optimize=True)
     _write_gif(frames, target) if kind == "gif" else _write_mp4(frames, target)

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from dexrepro.config import InputError, differences
+from dexrepro.recordings import load_recording
 from dexrepro.report import style
 from dexrepro.report.damage import check_result
-from dexrepro.storage import load_recording, read_json, read_yaml
+from dexrepro.storage import read_json, read_yaml
 
 PANELS = 6
 

@@ -1,50 +1,104 @@
-"""Is a result on disk whole? Asked before it is drawn, compared or shown; one sentence names the file that is not."""
+"""Is a result on disk whole, and is it data? Asked before it is drawn, compared or shown; one sentence names the file
+that is not."""
 
 from __future__ import annotations
 
 import gzip
+import re
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from dexrepro import chapters
 from dexrepro.config import InputError
-from dexrepro.storage import read_json, read_yaml
+from dexrepro.experiment import Experiment
+from dexrepro.storage import read_json, read_text, read_yaml
 
-KEYS = ("chapter", "experiment", "cases")
-
-
-def check_result(folder: Path, *names: str, series: bool = False) -> None:
-    """Raise InputError where one of a result's files cannot be used: run.json, ``names`` and, if asked, its series."""
-    run = _read(folder / "run.json", dict)
-    if missing := [key for key in KEYS if key not in run]:
-        raise _damaged(folder / "run.json", f"it has no '{missing[0]}'")
-    for name in names:
-        _read(folder / name, list if name == "claims.json" else dict)
-    if not series:
-        return
-    for case in run["cases"]:
-        if not any((folder / "series").glob(f"{case}.*")):
-            raise _damaged(folder, f"no series of the case '{case}'")
-    for path in sorted((folder / "series").glob("*.gz")):
-        try:
-            with gzip.open(path) as file:
-                while file.read(1 << 20):
-                    pass
-        except (OSError, EOFError, zlib.error) as error:
-            raise _damaged(path, str(error)) from error
+LARGEST = 1 << 28  # bytes of a series when it is unpacked
+ENTRY = {"status": str, "steps": int, "simulated": (int, float), "wall": (int, float)}
+RUN = {"chapter": str, "experiment": str, "cases": dict, "differs": list, "packages": dict, "wall": (int, float)}
+CLAIM = {"id": str, "figure": str, "statement": str, "source": str, "verdict": str, "values": dict}
 
 
-def _read(path: Path, kind: type) -> Any:
+def check_result(folder: Path, *names: str, series: bool = False) -> Experiment:
+    """The experiment that a result is of.
+
+    Raises InputError where one of its files cannot be used: run.json, ``names`` and, if asked, its series.
+    """
+    run = _read(folder / "run.json")
+    _require(folder / "run.json", run, RUN)
+    for case, entry in run["cases"].items():
+        _require(folder / "run.json", entry, ENTRY, f"cases.{case}.")
+    number, name = run["chapter"], run["experiment"]
+    known = (
+        {e.name: e for e in chapters.load(number).experiments} if number in (*chapters.numbers(), chapters.OWN) else {}
+    )
+    if name not in known:
+        raise _damaged(folder / "run.json", f"there is no experiment '{name}' in a chapter '{number}'")
+    for file in names:
+        data = _read(folder / file)
+        if file == "claims.json":
+            for place, claim in enumerate(data if isinstance(data, list) else [data]):
+                _require(folder / file, claim, CLAIM, f"{place}.")
+                if not isinstance(claim.get("margin"), int | float | None):
+                    raise _damaged(folder / file, f"{place}.margin is no number")
+        elif not isinstance(data, dict):
+            raise _damaged(folder / file, "it holds no dict")
+        for key, value in data.items() if file == "metrics.json" else ():
+            if not isinstance(value, int | float | None) or not key.startswith(f"{name}."):
+                raise _damaged(folder / file, f"{key} is no number of {name}")
+    if series:
+        for case in run["cases"]:
+            if not any((folder / "series").glob(f"{case}.*")):
+                raise _damaged(folder, f"no series of the case '{case}'")
+        for path in sorted((folder / "series").glob("*.gz")):
+            _check_series(path)
+    return known[name]
+
+
+def _check_series(path: Path) -> None:
     try:
-        data = read_yaml(path) if path.suffix == ".yaml" else read_json(path)
+        with gzip.open(path) as file:
+            read = 0
+            while block := file.read(1 << 20):
+                if (read := read + len(block)) > LARGEST:
+                    raise OSError(f"it unpacks to more than {LARGEST >> 20} MB")
+    except (OSError, EOFError, zlib.error) as error:
+        raise _damaged(path, str(error)) from error
+
+
+def is_safe(svg: Path) -> bool:
+    """Whether a picture is only a picture: no script, no event, nothing from elsewhere."""
+    try:
+        text = read_text(svg)
+    except (OSError, ValueError):
+        return False
+    return not re.search(
+        r"<\s*(script|foreignObject|iframe|object|embed|!ENTITY)|\son\w+\s*=|javascript:|href\s*=\s*[\"']?\s*(https?:|//|data:text)",
+        text, re.IGNORECASE,
+    )  # fmt: skip
+
+
+def _require(path: Path, data: Any, kinds: dict[str, Any], where: str = "") -> None:
+    if not isinstance(data, dict):
+        raise _damaged(path, f"{where.rstrip('.') or 'it'} holds no dict")
+    for key, kind in kinds.items():
+        if key not in data:
+            raise _damaged(path, f"it has no '{where}{key}'")
+        if not isinstance(data[key], kind) or isinstance(data[key], bool):
+            raise _damaged(path, f"{where}{key} = {str(data[key])[:40]!r} is of another kind")
+
+
+def _read(path: Path) -> Any:
+    read: Callable[[Path], Any] = read_yaml if path.suffix == ".yaml" else read_json
+    try:
+        return read(path)
     except (OSError, ValueError, yaml.YAMLError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise _damaged(path, str(reason)) from error
-    if not isinstance(data, kind):
-        raise _damaged(path, f"it holds no {kind.__name__}")
-    return data
 
 
 def _damaged(path: Path, reason: str) -> InputError:

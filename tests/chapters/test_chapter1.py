@@ -5,6 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from dexrepro.case import generator, live
 from dexrepro.chapters.chapter1.dartboard import experiment as dartboard
 from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.force_tracking import experiment as force_tracking
@@ -14,7 +15,6 @@ from dexrepro.chapters.chapter1.hold_path import hold_path
 from dexrepro.chapters.chapter1.line import carry, press
 from dexrepro.chapters.chapter1.lyapunov import experiment as lyapunov
 from dexrepro.chapters.chapter1.ready_to_hold import experiment as ready_to_hold
-from dexrepro.chapters.chapter1.rigid_boxes import experiment as rigid_boxes
 from dexrepro.chapters.chapter1.two_nuts import experiment as two_nuts
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.holding import AutoregressiveHolding, FixedDistance
@@ -22,7 +22,6 @@ from dexrepro.physics.soft_object import Cushion
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.inverse_kinematics import nearest
-from dexrepro.runner import generator, live
 
 
 @cache
@@ -173,11 +172,3 @@ def test_latch_switches_once_and_the_light_touch_is_held():
     numbers = hand_over.measure(recording, config)
     assert numbers["switches"] == 1
     assert abs(numbers["bias"]) < 0.2
-
-
-def test_score_interval_contains_the_share():
-    low, high = rigid_boxes.wilson(9, 9)
-    assert low == pytest.approx(0.70, abs=0.01)
-    assert high == pytest.approx(1.0)
-    low, high = rigid_boxes.wilson(5, 10)
-    assert low < 0.5 < high

@@ -11,13 +11,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from dexrepro.case import live
 from dexrepro.chapters.chapter2 import balloon_pair, batch, planar_pair
 from dexrepro.chapters.chapter2.balloon_movement import experiment as balloon_movement
 from dexrepro.chapters.chapter2.holding_line import experiment as holding_line
 from dexrepro.chapters.chapter2.holding_sensitivity.experiment import margins_of
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
-from dexrepro.runner import live
 
 cases = cache(partial(experiment_cases, compose_chapter("2")))
 

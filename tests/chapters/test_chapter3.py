@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from dexrepro import chapters, config
+from dexrepro.case import live
 from dexrepro.chapters.chapter3 import reach, scene
 from dexrepro.chapters.chapter3.external_push import experiment as external_push
 from dexrepro.chapters.chapter3.fixed_opening import experiment as fixed_opening
@@ -10,7 +11,6 @@ from dexrepro.chapters.chapter3.settling_time import experiment as settling_time
 from dexrepro.experiment import Config
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.kinematics import jacobian, point_jacobian
-from dexrepro.runner import live
 
 
 @pytest.fixture(scope="module")

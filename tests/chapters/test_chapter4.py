@@ -76,7 +76,7 @@ def test_all_printed_points_are_within_reach_from_the_preferred_posture():
     config = configured("payload_transfer", "reuse")
     arm = baxter("right")
     for point in (config.task.home, *config.task.starts, *config.task.ends):
-        q = nearest(arm, config.task.posture, point, task="position")
+        q = nearest(arm, config.task.posture, point, task="position", settle=400)
         assert kinematics.forward(arm, q)[0] == pytest.approx(point, abs=1e-9)
         assert np.all((q > arm.lower) & (q < arm.upper))
 

@@ -3,6 +3,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from dexrepro.case import generator
 from dexrepro.chapters.chapter6 import bimanual, learning, plane
 from dexrepro.chapters.chapter6.arm_obstacles import experiment as arm_obstacles
 from dexrepro.chapters.chapter6.constraint_cases import experiment as constraint_cases
@@ -11,7 +12,6 @@ from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
 from dexrepro.primitives.barrier import Constraint
 from dexrepro.primitives.constrained import LAWS, Reference, rollout
-from dexrepro.runner import generator
 
 
 @cache

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dexrepro.case import live
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.chapters.chapter7.fuzzy_generalisation import experiment as fuzzy_generalisation
 from dexrepro.chapters.chapter7.impedance_stability import experiment as impedance_stability
@@ -16,8 +17,8 @@ from dexrepro.chapters.chapter7.style_separation import experiment as style_sepa
 from dexrepro.chapters.chapter7.unseen_conditions import experiment as unseen_conditions
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
+from dexrepro.measures import rms_distance
 from dexrepro.robots.pen_arm import pen_arm_tip
-from dexrepro.runner import live
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +55,7 @@ def test_target_and_rollout_return_a_smooth_path(cases: Any) -> None:
     primitive, task = skills.Primitive(config, 8), skills.reach(config)
     path = skills.person(config).ordinary(task)
     again = primitive.rollout(primitive.target(path, task.ends[1], 8.0), *task.ends)
-    assert skills.rms(again, path) < 0.02
+    assert rms_distance(again, path) < 0.02
 
 
 def test_a_task_that_is_turned_is_performed_turned(cases: Any, learned: skills.Skills) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dexrepro import chapters
+from dexrepro.case import generator, live
 from dexrepro.chapters.chapter8 import task
 from dexrepro.chapters.chapter8.circle_tracking import experiment as circle_tracking
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
@@ -13,7 +14,6 @@ from dexrepro.chapters.chapter8.sponge import experiment as sponge
 from dexrepro.chapters.chapter8.unknown_object import experiment as unknown_object
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, optimal_gain
-from dexrepro.runner import generator, live
 
 CASES = {name: experiment_cases(compose_chapter("8"), name) for name in ("circle_tracking", "unknown_object", "sponge")}
 

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from dexrepro import config
+from dexrepro.case import live
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.grasp_through_opening import experiment as joined
 from dexrepro.chapters.chapter3.grasp_through_opening.figures import FILM
-from dexrepro.runner import live
 from dexrepro.vision.tabletop import Item
 
 RED = (0.9, 0.1, 0.1, 1.0)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dexrepro.case import generator, live
 from dexrepro.chapters.chapter5 import crossing, letters
 from dexrepro.chapters.chapter5.obstacle_crossing import experiment as obstacle_crossing
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.config import InputError, compose_chapter, experiment_cases
-from dexrepro.runner import generator, live
 
 
 def configured(chapter: str, experiment: str, case: str, *overrides: str) -> Any:

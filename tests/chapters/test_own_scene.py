@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dexrepro.case import live
 from dexrepro.chapters.own.scene import experiment as scene
 from dexrepro.cli import run_overrides
 from dexrepro.config import InputError, compose_chapter, experiment_cases
 from dexrepro.experiment import Recording
-from dexrepro.runner import live
 
 URDF = """
 <robot name="tiny">

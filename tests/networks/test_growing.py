@@ -32,6 +32,17 @@ def test_distance_is_measured_from_the_mean_of_the_nearest_centres():
     assert basis.centres[3] == pytest.approx([2.6])
 
 
+def test_the_nearest_centres_are_found_among_many():
+    rng = np.random.default_rng(0)
+    for _ in range(10):
+        centres, z = rng.normal(size=(200, 2)), rng.normal(size=2)
+        basis = GrowingGaussians(2, width=1.0, threshold=0.0, neighbours=3, placement=0.0)
+        basis.reset(centres)
+        basis(z, grow=True)
+        nearest = np.argsort(np.linalg.norm(centres - z, axis=1))[:3]
+        assert basis.centres[-1] == pytest.approx(centres[nearest].mean(axis=0))
+
+
 def test_growth_is_considered_at_every_interval_and_only_when_asked():
     basis = GrowingGaussians(1, width=1.0, threshold=0.5, interval=4)
     assert walk(basis, [[0.0], [1.0], [2.0], [3.0], [4.0], [5.0]]) == [1, 1, 1, 1, 2, 2]

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dexrepro.physics.elements import Elastic, JointLoad, Push, TipForce, joint_friction
-from dexrepro.physics.loop import Diverged, Progress
+from dexrepro.physics.loop import Diverged, LawFailed, Progress
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
@@ -220,11 +220,28 @@ def test_divergence_names_the_quantity_that_makes_up_most_of_the_sum():
             assert run.status.endswith(found)
 
 
-def test_a_torque_that_is_not_a_number_is_a_divergence():
+@pytest.mark.parametrize(
+    "answer", [np.full(3, np.nan), np.zeros(2), np.zeros((3, 3)), "much", None, [1.0, np.inf, 0.0]]
+)
+def test_what_is_no_torque_names_law_time_and_value(answer):
+    def pushing(sense):
+        return np.zeros(3) if sense.time < 0.5 else answer
+
     with World(gravity=FLAT) as world:
         world.add_arm("arm", planar(*BOOK), FOLLOWER)
-        with pytest.raises(Diverged, match="nan"):
-            world.run(1.0, {"arm": lambda s: np.full(3, np.nan)})
+        with pytest.raises(LawFailed, match=r"law .*pushing of arm 'arm' failed at 0.5 s: it gave .* 3 finite numbers"):
+            world.run(1.0, {"arm": pushing})
+        if np.shape(answer) == (3,):
+            stopped = world.run(1.0, {"arm": pushing}, on_divergence="stop")
+            assert "it gave" in stopped.status
+            assert stopped.time[-1] == pytest.approx(0.5)
+
+
+def test_an_error_in_a_law_names_law_and_time():
+    with World(gravity=FLAT) as world:
+        world.add_arm("arm", planar(*BOOK), FOLLOWER)
+        with pytest.raises(LawFailed, match=r"failed at 0 s: ZeroDivisionError"):
+            world.run(1.0, {"arm": lambda sense: 1 / 0})
 
 
 def test_inner_loop_runs_at_every_physics_step_while_the_controller_keeps_its_period():

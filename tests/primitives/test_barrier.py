@@ -106,3 +106,13 @@ def test_the_rate_of_the_pull_is_its_derivative_along_the_error(name):
     rate, step = rng.normal(0, 100, z1.shape), 1e-6
     difference = (constraint.pull(z1 + step * rate) - constraint.pull(z1 - step * rate)) / (2 * step)
     np.testing.assert_allclose(constraint.pull_rate(z1, rate), difference, rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.parametrize("z1", [50.0, -50.0])
+def test_the_second_case_is_the_printed_one_also_where_its_bounds_have_one_sign(z1):
+    """(6.17): K_1 of the lower bound on the right where it is positive, of the upper one on the left otherwise."""
+    lower, upper = (30.0, 75.0) if z1 > 0 else (-75.0, -30.0)
+    inner = 1 / ((lower if z1 > 0 else upper) ** 2 - z1**2)
+    outer = (upper**2 if z1 > 0 else lower**2) / (z1**2 - (upper if z1 > 0 else lower) ** 2)
+    expected = (outer + inner * z1**4) / (outer - inner * z1**3)
+    assert printed_case_two_pull(np.array([z1]), lower, upper) == pytest.approx([expected])

@@ -12,12 +12,15 @@ import pytest
 import yaml
 from PIL import Image
 
+from dexrepro import chapters
+from dexrepro.config import InputError
 from dexrepro.experiment import Experiment, Film, Recording
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
+from dexrepro.recordings import save_recording
 from dexrepro.report import animation
 from dexrepro.robots.planar import planar
-from dexrepro.storage import save_recording, write_json
+from dexrepro.storage import write_json
 
 CAMERA = Camera((0.4, 0.0, 0.0), 1.5, 0.0, -89.9)
 
@@ -44,15 +47,18 @@ def swing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Experi
     simulation.scene, simulation.stage = scene, stage
     pictures.FILM = Film("turn", "The arm turns.", CAMERA, "tip", "Distance [mm]", scale=1e3, span=(0.5, 2.0))
     experiment = Experiment("swing", home)
-    chapter = types.SimpleNamespace(experiment=lambda name: experiment)
-    monkeypatch.setattr(animation.chapters, "load", lambda number: chapter)
+    monkeypatch.setattr(chapters, "numbers", lambda: ("90",))
+    monkeypatch.setattr(chapters, "load", lambda number: types.SimpleNamespace(experiments=(experiment,)))
+    monkeypatch.setattr(animation, "compose_chapter", lambda number: {})
     folder = tmp_path / "results"
     time = np.linspace(0, 2, 41)
     angles = np.column_stack([time * np.pi / 4, 0 * time])
     series = {"time": time, "angles": angles, "tip": np.column_stack([np.cos(time), np.sin(time)])}
     for case in ("still", "turn"):
         save_recording(Recording(series), folder / "series", case, 20.0)
-    write_json(folder / "run.json", {"chapter": "90", "experiment": "swing", "cases": {"still": {}, "turn": {}}})
+    entry = {"status": "finished", "steps": 40, "simulated": 2.0, "wall": 0.1}
+    run = {"chapter": "90", "experiment": "swing", "differs": [], "packages": {}, "wall": 0.2}
+    write_json(folder / "run.json", run | {"cases": {"still": entry, "turn": entry}})
     (folder / "config.yaml").write_text(yaml.safe_dump({"cases": {"still": {}, "turn": {}}}))
     return folder, experiment
 
@@ -90,3 +96,18 @@ def test_a_film_is_up_to_date_until_its_recording_or_its_code_changes(swing: tup
 def test_another_case_is_shown_in_the_same_way(swing: tuple[Path, Experiment]) -> None:
     with Image.open(animation.render(swing[0], "still")) as film:
         assert film.size[0] == 2 * animation.SIZE[0]
+
+
+def test_a_result_that_names_foreign_code_is_not_rendered(swing: tuple[Path, Experiment], tmp_path: Path) -> None:
+    trap = tmp_path / "trap"
+    for target in ("pathlib.Path.touch", "dexrepro.storage.shutil.rmtree", "dexrepro.runner.redraw", "os.system"):
+        node = {"_target_": target, "self": str(trap)}
+        config = {"cases": {"turn": {"law": None, "arm": node}, "still": {}}}
+        (swing[0] / "config.yaml").write_text(yaml.safe_dump(config))
+        with pytest.raises(InputError, match=rf"config.yaml names {target} under cases.turn.arm._target_"):
+            animation.render(swing[0])
+    assert not trap.exists()
+    config["cases"]["turn"]["arm"] = {"_target_": "dexrepro.robots.planar.planar", "lengths": [1.0], "masses": [1.0]}
+    config["cases"]["turn"]["mine"] = {"_target_": "fractions.Fraction"}
+    (swing[0] / "config.yaml").write_text(yaml.safe_dump(config))
+    assert animation.render(swing[0], allow=["fractions"]).exists()

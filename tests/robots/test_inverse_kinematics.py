@@ -118,7 +118,7 @@ def test_unknown_task_is_refused():
 def test_the_nearest_posture_leaves_no_pull_in_the_null_space():
     arm, home = baxter("right"), posture("right")
     place, turn = forward(arm, home + 0.1)
-    q = nearest(arm, home, place, turn)
+    q = nearest(arm, home, place, turn, settle=400)
     np.testing.assert_allclose(forward(arm, q)[0], place, atol=1e-8)
     free = np.linalg.svd(jacobian(arm, q))[2][-1]
     assert abs(free @ (home - q)) < 1e-6 < np.abs(home - q).max()

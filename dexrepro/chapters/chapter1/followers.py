@@ -53,7 +53,7 @@ class Follower:
         mass_error: float,
     ) -> None:  # fmt: skip
         self.dt, self.model = dt, RigidBodyModel(arm, mass_error=mass_error)
-        self.inverse = InverseKinematics(arm, "pose", gain, dt, singular, home, posture, self.model)
+        self.inverse = InverseKinematics(arm, "pose", gain, dt, singular, home, posture, self.model, redistribute=False)
         self.torque = ComputedTorque(self.model, bandwidth)
 
     def reset(self, position: Array) -> None:

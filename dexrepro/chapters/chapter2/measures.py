@@ -22,12 +22,6 @@ def shown(value: float | int | None) -> float:
     return math.nan if value is None else float(value)
 
 
-def last_outside(time: Array, error: Array, bound: float) -> float:
-    """Time [s] after which the magnitude of an error stays within a bound: the end of the run if it never does."""
-    outside = np.flatnonzero(np.abs(error) > bound)
-    return float(time[outside[-1]]) if outside.size else 0.0
-
-
 def force_error(recording: Recording, desired: float, start: float, end: float = math.inf) -> Array:
     """||F|| - f_d [N] of the object between two instants [s]."""
     return recording["object.force"][recording.between(start, end)] - desired

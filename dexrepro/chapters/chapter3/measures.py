@@ -10,8 +10,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3.scene import ARM, distance_to_centre, gripper_arm
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms
 
 Array = NDArray[np.float64]
 

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from dexrepro.experiment import Metrics
+from dexrepro.measures import rms_length
 
 Array = NDArray[np.float64]
-
-
-def rms(vectors: Array) -> float:
-    """Root of the mean squared length of the rows; not a number where there are none."""
-    return float(np.sqrt(np.mean(np.sum(vectors * vectors, axis=1)))) if len(vectors) else math.nan
 
 
 def between(time: Array, start: float, end: float) -> NDArray[np.bool_]:
@@ -35,11 +29,11 @@ def tracking(time: Array, error: Array, usage: Array, torque: Array) -> Metrics:
     increments = np.abs(np.diff(torque[::stride], axis=0)).sum(axis=1)[between(time[::stride][:-1], 0.5, 5.0)]
     rate = np.diff(millimetres[between(time, 0.1, 3.0)], axis=0)
     return {
-        "rmse_mm": rms(millimetres),
-        "transient_rmse_mm": rms(millimetres[between(time, 1.0, 5.0)]),
-        "steady_rmse_mm": rms(millimetres[len(time) // 2 :]),
+        "rmse_mm": rms_length(millimetres),
+        "transient_rmse_mm": rms_length(millimetres[between(time, 1.0, 5.0)]),
+        "steady_rmse_mm": rms_length(millimetres[len(time) // 2 :]),
         "torque_increment_nm": float(increments.mean()) if len(increments) else None,
-        "error_ripple_mm": rms(_about_mean(millimetres, round(0.15 / step))[between(time, 0.2, 3.0)]),
+        "error_ripple_mm": rms_length(_about_mean(millimetres, round(0.15 / step))[between(time, 0.2, 3.0)]),
         "error_extrema": int(np.sum(rate[1:] * rate[:-1] < 0)),
         "max_usage": float(np.abs(usage).max()),
         "violations": int(np.sum(np.abs(usage).max(axis=1) >= 1.0)),

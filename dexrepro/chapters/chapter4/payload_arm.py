@@ -69,7 +69,7 @@ def scene(config: Config) -> World:
     """The right arm at rest with its end point at X_0 and the payload hanging from it."""
     world = World(step=config.step, gravity=(0.0, 0.0, -9.81), perturbation=config.perturbation)
     arm = baxter("right")
-    world.add_arm("arm", arm, position=nearest(arm, config.task.posture, config.task.home, task="position"))
+    world.add_arm("arm", arm, position=nearest(arm, config.task.posture, config.task.home, task="position", settle=400))
     if config.payload:
         payload = config.payload
         world.hang("payload", "arm", payload.mass, payload.drop, radius=0.04, angular_damping=payload.angular_damping)

@@ -69,10 +69,6 @@ def squared_error(path: Any, wanted: Any) -> float:
     return float(np.mean(np.sum((path - wanted) ** 2, axis=-1)))
 
 
-def rms_distance(path: Any, wanted: Any) -> float:
-    return squared_error(path, wanted) ** 0.5
-
-
 def rollout(primitive: DMP, config: Config, **options: Any) -> Any:
     """Path (..., N, d) at the demonstration's instants."""
     return primitive.rollout(config.dmp.duration / (config.dmp.samples - 1), **options).position

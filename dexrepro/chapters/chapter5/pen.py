@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from dexrepro.chapters.measures import rms
 from dexrepro.control.bounded_neural import barrier
 from dexrepro.control.gravity_pd import GravityPD
 from dexrepro.control.prescribed_performance import PerformanceBound
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms
 from dexrepro.networks import AdaptiveNetwork, Gaussians
 from dexrepro.physics.elements import JointLoad, TipForce, joint_friction
 from dexrepro.physics.model import RigidBodyModel

@@ -14,9 +14,9 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
 from dexrepro.chapters.chapter7 import skills
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Recording
 from dexrepro.humans.reaching import Obstacle
+from dexrepro.measures import rms
 from dexrepro.physics.elements import JointLoad, joint_friction
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense

@@ -300,11 +300,6 @@ def bundle_means(config: Config, traces: Array) -> dict[tuple[str, str], Array]:
     }
 
 
-def rms(paths: Array, reference: Array) -> Array:
-    """Root mean square distance along paths (..., N, d) to a reference (..., N, d)."""
-    return np.sqrt(((paths - reference) ** 2).sum(axis=-1).mean(axis=-1))
-
-
 def by_path(values: Array) -> Array:
     """Paths (k, N, 3) from a channel (N, 3 k)."""
     return np.moveaxis(values.reshape(len(values), -1, 3), 0, 1)

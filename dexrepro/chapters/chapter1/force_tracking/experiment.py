@@ -12,8 +12,8 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.followers import PlanarFollower
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import rms
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense

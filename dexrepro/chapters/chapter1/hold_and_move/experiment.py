@@ -18,9 +18,9 @@ from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.claims import PRINTED
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
-from dexrepro.chapters.measures import rms
 from dexrepro.control.facing import facing
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import angle_between, last_outside, rms
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
@@ -164,7 +164,6 @@ def _condense(recording: Recording, path: HoldPath, world: World, config: Config
     poses = {name: forward(world.arm(name).arm, recording[f"{name}.position"]) for name in SIDES}
     relative = np.swapaxes(poses["leader"][1], -1, -2) @ poses["follower"][1] @ FLIP
     n = len(recording.time)
-    axis = path.axis[:n]
     between = poses["follower"][0] - poses["leader"][0]
     recording.series = {
         "time": recording.time,
@@ -177,7 +176,7 @@ def _condense(recording: Recording, path: HoldPath, world: World, config: Config
         "lag": np.linalg.norm(poses["leader"][0] - path.position[:n], axis=1),
         # Turn of one tool against the other about the holding line.
         "twist": np.arctan2(relative[:, 1, 0], relative[:, 0, 0]),
-        "pointing": np.arccos(np.clip(np.sum(between * axis, axis=1) / np.linalg.norm(between, axis=1), -1, 1)),
+        "pointing": angle_between(between, path.axis[:n]),
         "slip": recording["grip.slip"],
         "object": recording["object.pose"],
         "joints": np.hstack([recording[f"{name}.position"] for name in SIDES]),
@@ -192,13 +191,12 @@ def measure(recording: Recording, config: Config) -> Metrics:
     error = force - desired
     rise = np.flatnonzero(force >= 0.95 * desired)
     early = time < config.settled
-    outside = np.flatnonzero((np.abs(error) > 0.1 * desired) & early)
     return {
         "rmse": rms(error[late]),
         "rmse_measured": rms((recording["measured"] - desired)[late]),
         "rise": float(time[rise[0]]) if len(rise) else config.duration,
         "overshoot": float(max(0.0, force[early].max() / desired - 1.0)),
-        "settling": float(time[outside[-1]]) if len(outside) else 0.0,
+        "settling": last_outside(time[early], error[early], 0.1 * desired),
         "twist": float(np.rad2deg(np.abs(recording["twist"] - recording["twist"][0]).max())),
         "pointing": float(np.rad2deg(recording["pointing"].max())),
         "lag": float(recording["lag"].max()),

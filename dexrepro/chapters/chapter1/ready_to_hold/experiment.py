@@ -18,10 +18,10 @@ from scipy.spatial.transform import Rotation
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, joint_channels
-from dexrepro.chapters.measures import rms
 from dexrepro.control.facing import facing
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
+from dexrepro.measures import angle_between, rms
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
@@ -160,8 +160,6 @@ def _condense(recording: Recording, plan: dict[str, Any], seen: Any, world: Worl
     poses = {name: forward(world.arm(name).arm, recording[f"{name}.position"]) for name in SIDES}
     n = len(recording.time)
     own, partner = poses["follower"], poses["leader"]
-    direction = partner[0] - own[0]
-    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     return {
         "time": recording.time,
         "follower": own[0],
@@ -170,8 +168,8 @@ def _condense(recording: Recording, plan: dict[str, Any], seen: Any, world: Worl
         "seen": seen[:n],
         "weights": recording["weights"],
         "ready": recording["ready"],
-        "facing": np.arccos(np.clip(-np.sum(own[1][:, :, 2] * partner[1][:, :, 2], axis=1), -1, 1)),
-        "pointing": np.arccos(np.clip(np.sum(own[1][:, :, 2] * direction, axis=1), -1, 1)),
+        "facing": angle_between(own[1][:, :, 2], -partner[1][:, :, 2]),
+        "pointing": angle_between(own[1][:, :, 2], partner[0] - own[0]),
         "joints": np.hstack([recording[f"{name}.position"] for name in SIDES]),
     }
 

@@ -7,7 +7,6 @@ dimensions. A case repeats the task from several start poses of the box.
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -17,11 +16,11 @@ from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
 from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import FLIP, LEVEL, SIDES, TABLE
-from dexrepro.chapters.measures import rms
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.control.potential_field import PotentialField
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.operator import minimum_jerk
+from dexrepro.measures import binomial_interval, rms
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
@@ -202,18 +201,10 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
-def wilson(successes: int, runs: int) -> tuple[float, float]:
-    """95 % score interval of a share."""
-    z, p = 1.96, successes / runs
-    centre = (p + z * z / (2 * runs)) / (1 + z * z / runs)
-    half = z * math.sqrt(p * (1 - p) / runs + z * z / (4 * runs * runs)) / (1 + z * z / runs)
-    return centre - half, centre + half
-
-
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     sizes = [metrics[size] for size in SIZES if size in metrics]
     if not sizes:
         return {}
     wins, runs = sum(int(m["successes"] or 0) for m in sizes), sum(int(m["runs"] or 0) for m in sizes)
-    low, high = wilson(wins, runs)
+    low, high = binomial_interval(wins, runs)
     return {"success_share": wins / runs, "success_low": low, "success_high": high}

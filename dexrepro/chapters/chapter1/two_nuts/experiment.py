@@ -15,6 +15,7 @@ import pandas as pd
 from dexrepro.arrays import Rng
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.operator import COMFORTABLE_ROLL, FOREARM_ROLL, Hand, Operator
+from dexrepro.measures import rms_distance
 
 RATE = 50.0
 
@@ -78,7 +79,7 @@ def _judge(hand: Hand, config: Config) -> dict[str, float]:
     jitter, error = [], []
     for (begin, end), nut in zip(hand.working, places):  # type: ignore[attr-defined]
         tool = record["tool"][begin:end]
-        jitter.append(np.sqrt(np.mean(np.sum((tool - tool.mean(axis=0)) ** 2, axis=1))))
+        jitter.append(rms_distance(tool, tool.mean(axis=0)))
         error.append(np.linalg.norm(tool.mean(axis=0) - nut))
     return {
         "largest roll [deg]": np.rad2deg(roll.max()),

@@ -9,8 +9,8 @@ import numpy as np
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import balloon_pair
 from dexrepro.chapters.chapter2.measures import Array, force_error
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import rms
 
 RATE = 20.0
 

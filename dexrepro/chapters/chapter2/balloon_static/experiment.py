@@ -6,9 +6,9 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import balloon_pair
-from dexrepro.chapters.chapter2.measures import last_outside, mean
-from dexrepro.chapters.measures import rms
+from dexrepro.chapters.chapter2.measures import mean
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import last_outside, rms
 from dexrepro.physics.rendering import Camera
 
 RATE = 50.0

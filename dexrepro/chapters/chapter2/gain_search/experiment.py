@@ -11,6 +11,7 @@ import pandas as pd
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2.batch import controlled_by, simulate_runs
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms
 
 RATES = ("rate_1", "rate_2", "rate_3", "rate_4")
 
@@ -49,7 +50,7 @@ def summary(runs: pd.DataFrame, config: Config) -> pd.DataFrame:
     """One row a candidate: its gains and the root mean square of its runs' errors [N]."""
     gains = [str(name) for name in runs if str(name).startswith("gain_")]
     found = runs.groupby(["controller", "candidate"], sort=False)
-    errors = found["rmse"].agg(lambda values: float(np.sqrt(np.mean(np.square(np.asarray(values))))))
+    errors = found["rmse"].agg(rms)
     return found[gains].first().join(errors).reset_index()
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import planar_pair
 from dexrepro.chapters.chapter2.measures import force_error, mean
-from dexrepro.chapters.measures import rms
 from dexrepro.control.holding_reference import KnownMovement
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import rms
 
 RATE = 50.0
 SETTLED = 5.0  # s

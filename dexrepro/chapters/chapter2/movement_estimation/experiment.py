@@ -8,9 +8,9 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import planar_pair
-from dexrepro.chapters.chapter2.measures import force_error, last_outside, mean
-from dexrepro.chapters.measures import rms
+from dexrepro.chapters.chapter2.measures import force_error, mean
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import last_outside, rms
 
 RATE = 50.0
 SETTLED = 20.0  # s, from here on a run counts as settled

@@ -12,9 +12,9 @@ from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
 from dexrepro.chapters.chapter3.scene import ARM, ELBOW, FOREARM, MID_FOREARM, Touching, build, cutaway, gripper_arm
-from dexrepro.chapters.measures import rms
 from dexrepro.control.momentum_observer import MomentumObserver
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms
 from dexrepro.physics.elements import Push
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World

@@ -13,12 +13,12 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.ndimage import find_objects
 from scipy.ndimage import label as regions_of
-from scipy.stats import beta
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.scene import ARM, Touching, add_box, cutaway, gripper_arm, start_posture
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import binomial_interval
 from dexrepro.physics.rendering import Camera, Overhead
 from dexrepro.physics.world import World
 from dexrepro.vision.classifier import GraspClassifier
@@ -214,12 +214,13 @@ def _moved(item: Item, body: Any) -> Item:
 def measure(recording: Recording, config: Config) -> Metrics:
     table = recording.frames["scenes"]
     count, trials = int(table.lifted.sum()), len(table)
+    low, high = binomial_interval(count, trials, "exact")
     return {
         "lifted": count,
         "trials": trials,
         "success": count / trials,
-        "success_low": float(beta.ppf(0.025, count, trials - count + 1)) if count else 0.0,
-        "success_high": float(beta.ppf(0.975, count + 1, trials - count)) if count < trials else 1.0,
+        "success_low": low,
+        "success_high": high,
         "opening_error_max": float(table.opening_error.max()),
         "good_grasps": int((table.truly != "bad").sum()),
         "scenes_with_good_grasp": int((table.possible > 0).sum()),

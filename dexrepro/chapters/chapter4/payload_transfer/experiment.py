@@ -6,8 +6,9 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter4 import payload_arm
-from dexrepro.chapters.chapter4.measures import Array, rms
+from dexrepro.chapters.chapter4.measures import Array
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms_length
 from dexrepro.networks import Lattice
 from dexrepro.robots import kinematics
 from dexrepro.robots.baxter import baxter
@@ -35,8 +36,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
         if number in payload_arm.TRAINING:
             metrics[f"nodes_phase{number + 1:.0f}"] = int(nodes[now][-1])
             continue
-        errors.append(rms(error))
-        rates.append(rms(np.diff(error, axis=0) / step))
+        errors.append(rms_length(error))
+        rates.append(rms_length(np.diff(error, axis=0) / step))
         metrics[f"trajectory{number - 1:.0f}_rmse_mm"] = errors[-1]
     late = phase > 1
     return metrics | {

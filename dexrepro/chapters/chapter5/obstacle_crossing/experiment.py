@@ -11,6 +11,7 @@ from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import crossing, letters
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.crossing import clearance
+from dexrepro.measures import rms_distance
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
@@ -47,7 +48,7 @@ def _quality(draw: int, skills: crossing.Skills, config: Config) -> list[tuple[A
     result = []
     for skill, primitive in skills.skills.items():
         path = letters.rollout(primitive, config)
-        rms = letters.rms_distance(path, skills.demonstrations[skill].position)
+        rms = rms_distance(path, skills.demonstrations[skill].position)
         result += [(draw, skill, blocks, clearance(path, blocks).min(), rms) for blocks in crossing.HEIGHTS]
     return result
 
@@ -57,8 +58,7 @@ def _changes(draw: int, skills: crossing.Skills, config: Config) -> list[tuple[A
     for blocks in crossing.HEIGHTS[1:]:
         paths = [letters.rollout(skills.steps[blocks, m], config) for m in counts]
         result += [
-            (draw, blocks, m, letters.rms_distance(after, before))
-            for m, before, after in zip(counts[1:], paths, paths[1:])
+            (draw, blocks, m, rms_distance(after, before)) for m, before, after in zip(counts[1:], paths, paths[1:])
         ]
     return result
 

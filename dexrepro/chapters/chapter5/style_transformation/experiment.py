@@ -10,6 +10,7 @@ import pandas as pd
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import letters
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms_distance
 from dexrepro.primitives import DMP, Demonstration, extend_styles, interpolate, original
 
 PAIRS = (("w", "z"), ("k", "l"))
@@ -26,10 +27,10 @@ def simulate(config: Config, rng: Rng) -> Recording:
         learned = _learn(taught, config, generator)
         for (letter, m), primitive in learned.items():
             path = letters.rollout(primitive, config)
-            target, base = (letters.rms_distance(path, shown[name].position) for name in (letter, config.hand.base))
+            target, base = (rms_distance(path, shown[name].position) for name in (letter, config.hand.base))
             back = np.abs(letters.rollout(original(primitive), config) - letters.rollout(learned[letter, 0], config))
-            nearest = min(config.hand.targets, key=lambda name: letters.rms_distance(path, shown[name].position))
-            others = min(letters.rms_distance(path, shown[name].position) for name in shown if name != letter)
+            nearest = min(config.hand.targets, key=lambda name: rms_distance(path, shown[name].position))
+            others = min(rms_distance(path, shown[name].position) for name in shown if name != letter)
             rows.append((draw, letter, m, target, base, nearest == letter, others, back.max()))
         kept = kept or learned
     columns = ["draw", "letter", "m", "target", "base", "nearest", "others", "recovery"]

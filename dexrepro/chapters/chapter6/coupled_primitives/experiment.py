@@ -10,6 +10,7 @@ from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.waypoints import minimum_jerk
+from dexrepro.measures import rms
 from dexrepro.primitives.coupling import Agents, SurfaceFollower, coupled_rollout, steering
 from dexrepro.primitives.dmp import DMP
 from dexrepro.primitives.kernels import phase
@@ -98,7 +99,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     error = recording["error"]
     late = error[len(error) // 5 :]
     size = {
-        "surface": float(np.sqrt((late**2).mean())),
+        "surface": rms(late),
         "obstacle": float(error.min()),
     }.get(config.system, float(np.abs(error).max()))
     return {"size": size, "end_error": float(abs(error[-1])), "goal_error": float(recording["goal_error"][0])}

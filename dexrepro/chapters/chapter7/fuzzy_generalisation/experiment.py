@@ -6,8 +6,8 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import skills
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms
 
 RATE = 50.0
 

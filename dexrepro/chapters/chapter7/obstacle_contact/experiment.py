@@ -6,9 +6,9 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import desk
-from dexrepro.chapters.measures import rms
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.reaching import Obstacle
+from dexrepro.measures import rms
 from dexrepro.physics.elements import Push
 from dexrepro.robots.pen_arm import pen_arm_tip
 

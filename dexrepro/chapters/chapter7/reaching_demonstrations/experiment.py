@@ -9,6 +9,7 @@ import numpy as np
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms, rms_distance
 from dexrepro.robots.pen_arm import pen_arm_angles
 
 RATE = 50.0
@@ -79,9 +80,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
     learned = recording["learned"]
     error = recording["learned_stiffness"] - stiffness
     return {
-        "ordinary_rmse": float(skills.rms(learned, ordinary.mean(axis=0))),
+        "ordinary_rmse": float(rms_distance(learned, ordinary.mean(axis=0))),
         "ordinary_end_error": float(np.linalg.norm(learned[-1] - skills.reach(config).ends[1])),
-        "stiffness_rmse": float(np.sqrt(np.mean(error**2)) / stiffness.mean()),
+        "stiffness_rmse": float(rms(error) / stiffness.mean()),
         "smallest_clearance": min(
             float(c.obstacle.clearance(paths, config.scene.tool_radius).min())
             for c, paths in zip(skills.conditions(config), paths_of(recording, "reactions", config))

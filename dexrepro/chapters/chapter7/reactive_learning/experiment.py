@@ -10,6 +10,7 @@ import pandas as pd
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms_distance
 from dexrepro.primitives.reactive import fit_reaction, ridge_weights
 
 RATE = 50.0
@@ -55,8 +56,8 @@ def errors(
     learned: skills.Skills, paths: np.ndarray, forcing: np.ndarray, targets: np.ndarray, chosen: list[int]
 ) -> dict:
     return {
-        "rmse": skills.rms(paths, learned.demonstrated[chosen]).mean(),
-        "worst_rmse": skills.rms(paths, learned.demonstrated[chosen]).max(),
+        "rmse": rms_distance(paths, learned.demonstrated[chosen]).mean(),
+        "worst_rmse": rms_distance(paths, learned.demonstrated[chosen]).max(),
         "forcing_error": np.mean([np.linalg.norm(f - t) / np.linalg.norm(t) for f, t in zip(forcing, targets)]),
         "end_error": np.linalg.norm(paths[:, -1] - learned.goal, axis=-1).max(),
     }
@@ -79,7 +80,7 @@ def baselines(config: Config, learned: skills.Skills, demonstrations: np.ndarray
         "printed sign of D(v^N - v)": learned.perform(forcing @ learned.reach.axes.T),
     }
     spread = np.sqrt(((demonstrations - mean[:, None]) ** 2).sum(axis=-1).mean(axis=(1, 2)))
-    rows = [{"what": name, "rmse": skills.rms(path, mean).mean()} for name, path in paths.items()]
+    rows = [{"what": name, "rmse": rms_distance(path, mean).mean()} for name, path in paths.items()]
     return pd.DataFrame([*rows, {"what": "spread of repetitions", "rmse": spread.min()}])
 
 

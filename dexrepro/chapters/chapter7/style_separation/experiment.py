@@ -8,6 +8,7 @@ import pandas as pd
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms_distance
 from dexrepro.primitives.reactive import Styles
 
 RATE = 50.0
@@ -24,7 +25,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
         styles = Styles.separate(targets, rank, config.style.shared)
         weights = styles.fit(learned.features, learned.primitive.phases, config.enhancement.ridge)
         paths = learned.perform(change @ weights)
-        error = skills.rms(paths, learned.demonstrated[chosen])
+        error = rms_distance(paths, learned.demonstrated[chosen])
         clearance = [
             float(skills.conditions(config)[i].obstacle.clearance(path, config.scene.tool_radius))
             for i, path in zip(chosen, paths)

@@ -11,6 +11,7 @@ import pandas as pd
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms_distance
 from dexrepro.networks.fuzzy import FuzzySystem
 
 RATE = 50.0
@@ -38,7 +39,7 @@ def at_the_rules(config: Config, learned: skills.Skills, known: list[skills.Cond
     """How far the fuzzy output at each rule's own condition is from that rule's reaction [cm]."""
     own = learned.perform(learned.reactions)
     blended = learned.perform(np.array([fuzzy(c.inputs, learned.reactions, known, config) for c in known]))
-    return pd.DataFrame({"condition": [c.name for c in known], "rmse": skills.rms(blended, own)})
+    return pd.DataFrame({"condition": [c.name for c in known], "rmse": rms_distance(blended, own)})
 
 
 def leave_one_out(config: Config, learned: skills.Skills, known: list[skills.Condition]) -> pd.DataFrame:
@@ -48,7 +49,7 @@ def leave_one_out(config: Config, learned: skills.Skills, known: list[skills.Con
             predict(c.inputs, np.delete(learned.reactions, i, axis=0), known[:i] + known[i + 1 :], config)
             for i, c in enumerate(known)
         ]
-        rows[method] = skills.rms(learned.perform(np.array(forcing)), learned.demonstrated)
+        rows[method] = rms_distance(learned.perform(np.array(forcing)), learned.demonstrated)
     return pd.DataFrame(rows)
 
 
@@ -75,7 +76,7 @@ def unseen(config: Config, learned: skills.Skills, known: list[skills.Condition]
     for method, predict in PREDICTORS.items():
         forcing = np.array([predict(x, learned.reactions, known, config) for x, _ in cases])
         performed[method] = learned.perform(forcing)
-        rows[method] = skills.rms(performed[method], truth)
+        rows[method] = rms_distance(performed[method], truth)
     for method, paths in performed.items():
         clear = [float(o.clearance(path, scene.tool_radius)) for (_, o), path in zip(cases, paths)]
         rows[f"{method}_touches"] = np.less(clear, 0).astype(int)

@@ -12,6 +12,7 @@ from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter8.task import TaskController, beyond, circle, two_link
 from dexrepro.control.barrier_tracking import BarrierTracking, barrier_energy
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.measures import rms, rms_length
 from dexrepro.networks import AdaptiveNetwork, GrowingGaussians
 from dexrepro.physics.elements import JointLoad, joint_friction
 from dexrepro.physics.model import RigidBodyModel
@@ -95,7 +96,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
     for name, part in (("rms", steady), ("early", early)):
         for axis, letter in enumerate("xy"):
-            metrics[f"{name}_{letter}"] = 1e3 * float(np.sqrt(np.mean(part[:, axis] ** 2))) if len(part) else None
+            metrics[f"{name}_{letter}"] = 1e3 * rms(part[:, axis])
     if "nodes" in recording:
         counts = recording["nodes"][-1].astype(int)
         features = getattr(config.networks[2].basis, "features_per_node", 1)
@@ -105,7 +106,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         metrics |= {
             "nodes": int(counts.sum()),
             "features": int(counts.sum()) * features,
-            "network_force": float(np.sqrt(np.mean(np.sum(force**2, axis=1)))) if len(force) else None,
+            "network_force": rms_length(force),
             "feature_power": float(power.mean()) if len(power) else None,
             "gain": float(power.mean() * recording.frames["rate"]["gravity"][0]) if len(power) else None,
         }

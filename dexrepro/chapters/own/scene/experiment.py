@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dexrepro.arrays import Rng
-from dexrepro.chapters.measures import rms
 from dexrepro.chapters.own.drivers import driver
 from dexrepro.chapters.own.paths import Path, leader_path
 from dexrepro.config import InputError
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.measures import rms
 from dexrepro.physics.elements import Elastic, Ends
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import RigidBody
