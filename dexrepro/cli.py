@@ -120,6 +120,7 @@ def _parser() -> argparse.ArgumentParser:
 
     new = commands.add_parser("new", help="write a working control law of your own, with its test")
     new.add_argument("what", choices=["controller"])
+    new.add_argument("--kind", choices=["joint", "end_point", "holding"], default="holding")
     new.add_argument("name", help="class name, for example MyLaw")
     new.set_defaults(function=new_command)
 
@@ -395,10 +396,10 @@ def report_command(options: argparse.Namespace) -> int:
 
 
 def new_command(options: argparse.Namespace) -> int:
-    """``dexrepro new controller NAME``."""
+    """``dexrepro new controller NAME [--kind KIND]``."""
     from dexrepro.scaffold import new_controller
 
-    law, test, command = new_controller(options.name, Path())
+    law, test, command = new_controller(options.name, options.kind, Path())
     out.print(f"wrote {law} and {test}; try:\n  pytest {test}\n  {command}", markup=False)
     return OK
 

@@ -12,11 +12,11 @@ class HoldingLineRegulation:
     the length L it closes a lateral offset with the time constant L dt / (gain f).
 
     gain: k_y [m/N per sample]; 0 switches the regulation off.
-    sign: -1 as printed; +1 is kept to show what the opposite reading does.
+    printed: False takes the opposite sign, to show what that reading does.
     """
 
-    def __init__(self, *, gain: Any, sign: float = -1.0) -> None:
-        self.gain, self.sign = gain, sign
+    def __init__(self, *, gain: Any, printed: bool = True) -> None:
+        self.gain, self._sign = gain, (-1.0 if printed else 1.0)
         self.reset()
 
     def reset(self) -> None:
@@ -24,5 +24,5 @@ class HoldingLineRegulation:
 
     def __call__(self, force: Any) -> Any:
         """Lateral displacement [m] after one more sample of the lateral force [N]; floats, or arrays of one shape."""
-        self.displacement = self.displacement + self.sign * self.gain * force
+        self.displacement = self.displacement + self._sign * self.gain * force
         return self.displacement

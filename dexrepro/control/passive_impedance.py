@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
+
+from dexrepro.control.contract import Kind, Measured
 
 
 class PassiveImpedance:
@@ -12,14 +14,18 @@ class PassiveImpedance:
     ``velocity`` is the reference's [m/s]. Behind a partner of constant velocity v it keeps the force error b_pi v.
     """
 
+    kind: ClassVar[Kind] = "holding"
+
     def __init__(self, *, mass: Any, damping: Any, desired_force: Any, dt: float) -> None:
         self.mass, self.damping, self.desired_force, self.dt = mass, damping, desired_force, dt
 
-    def reset(self, position: Any) -> None:
-        self._position, self.velocity = position, 0.0
+    def reset(self, measured: Measured[Any]) -> None:
+        """Start the reference at rest where the arm is."""
+        self._position, self.velocity = measured.position, 0.0
 
-    def __call__(self, position: Any, force: Any) -> Any:
-        error, velocity = force - self.desired_force, self.velocity
+    def __call__(self, measured: Measured[Any]) -> Any:
+        """Reference [m]."""
+        error, velocity = measured.force - self.desired_force, self.velocity
         middle = velocity + 0.5 * self.dt * (error - self.damping * velocity) / self.mass
         self._position = self._position + self.dt * middle
         self.velocity = velocity + self.dt * (error - self.damping * middle) / self.mass

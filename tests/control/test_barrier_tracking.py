@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from instant import at
 
 from dexrepro.control.barrier_tracking import BarrierTracking, barrier_energy, barrier_terms
-from dexrepro.control.task_space import ArmState, Motion
+from dexrepro.control.motion import Motion
 from dexrepro.networks import AdaptiveNetwork, GrowingGaussians
 
 BOUND = 0.05
@@ -60,7 +61,7 @@ def drive(law, mass=2.0, load=(0.0, -20.0), start=(0.03, 0.0), duration=3.0, dt=
         angle = 0.5 * step * dt
         circle, turn = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
         target = Motion(np.array([0.1, 0.2]) + 0.1 * circle, 0.05 * turn, -0.025 * circle)
-        force = law(ArmState(position, velocity, position, velocity), target, np.array(push))
+        force = law(at(position, np.array(push), velocity), target).force
         errors.append(position - target.position)
         velocity = velocity + dt * (force + np.array(load) + np.array(push)) / mass
         position = position + dt * velocity
@@ -83,7 +84,7 @@ def test_the_networks_carry_the_load_and_not_the_feedback():
 def test_the_measured_force_is_cancelled_with_the_minus_sign():
     quiet = drive(controller(boundary_layer=0.01), duration=0.5)
     pushed = drive(controller(boundary_layer=0.01), duration=0.5, push=(10.0, 0.0))
-    doubled = drive(controller(boundary_layer=0.01, force_sign=1.0), duration=0.5, push=(10.0, 0.0))
+    doubled = drive(controller(boundary_layer=0.01, printed=True), duration=0.5, push=(10.0, 0.0))
     assert pushed == pytest.approx(quiet, abs=1e-9)
     assert np.abs(doubled - quiet).max() > 1e-4
 
@@ -101,5 +102,5 @@ def test_enhanced_features_have_one_unit_of_length_more_a_node(x, y):
 def test_a_reset_law_repeats_itself():
     law = controller()
     first = drive(law, duration=0.2)
-    law.reset()
+    law.reset(at(np.zeros(2)))
     assert np.array_equal(drive(law, duration=0.2), first)

@@ -14,7 +14,7 @@ ERRATA = (
         "error",
         "The target forcing has - D v; solving (5.1) for f gives + D v (chapter 6 prints it so).",
         "+ D v",
-        switch="letter_accuracy.training.damping_sign=-1",
+        switch="letter_accuracy.training.printed=true",
         evidence=(
             *(f"{ACCURACY}.{case}.n20.dmp.mse" for case in ("default", "printed_damping")),
             *(f"{STYLES}.{case}.z.final" for case in ("default", "printed_damping")),
@@ -148,7 +148,7 @@ ERRATA = (
         "The network enters with the wrong sign for the weight law (5.44); it changes between (5.33) and (5.34). The "
         "printed sign makes learning a positive feedback.",
         "+ g(S), or the first sign of (5.44) turned.",
-        switch="bounded_tracking.law.network_sign=-1",
+        switch="bounded_tracking.law.printed=[network]",
         evidence=tuple(
             f"{TRACKING}.{c}.{m}"
             for c in ("letter_w", "printed_sign", "sign_only", "printed_no_robust")
@@ -200,7 +200,7 @@ ERRATA = (
         "unit is not that of a rate: enough where |v'/v| is above about 1/s, too little below, and nothing once v has "
         "reached a floor. A radical over the first two terms may have been meant.",
         "L = -(k_c + |v'/v|), so that L - v'/v <= -k_c.",
-        switch="bounded_tracking.law.virtual_gain=printed",
+        switch="bounded_tracking.law.printed=[virtual_gain]",
         evidence=tuple(
             f"{TRACKING}.{c}.{m}"
             for c in ("printed_gain", "printed_gain_no_network")

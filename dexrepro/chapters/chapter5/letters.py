@@ -34,7 +34,7 @@ def demonstrations(
 
 def taught(demonstration: Demonstration, config: Config) -> Demonstration:
     """What a primitive learns from: with the printed sign of D v, Eq. (5.5), the same path at negated velocity."""
-    return replace(demonstration, velocity=config.training.damping_sign * demonstration.velocity)
+    return replace(demonstration, velocity=(-1 if config.training.printed else 1) * demonstration.velocity)
 
 
 def letter_scaling(config: Config) -> Scaling:

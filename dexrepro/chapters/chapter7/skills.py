@@ -136,7 +136,7 @@ class Primitive:
         self.phases = phase(self.time, self.duration, config.dmp.phase_decay)
         self.kernels = GaussianKernels.spaced(kernels, config.dmp.phase_decay, config.dmp.overlap)
         self.system = SpringDamper(config.dmp.stiffness, config.dmp.damping)
-        self.printed_sign = {"corrected": False, "printed": True}[config.target_sign]
+        self.printed_target = config.printed_target
         self.ridge = config.dmp.ridge
 
     def target(self, paths: Array, goal: ArrayLike, cutoff: float, padding: str = "odd") -> Array:
@@ -144,7 +144,7 @@ class Primitive:
         smooth = low_pass(paths, cutoff, self.rate, padding, axis=-2)  # type: ignore[arg-type]
         velocity = self.duration * np.gradient(smooth, 1 / self.rate, axis=-2, edge_order=2)
         acceleration = self.duration * np.gradient(velocity, 1 / self.rate, axis=-2, edge_order=2)
-        return self.system.forcing(smooth, velocity, acceleration, goal, self.printed_sign)
+        return self.system.forcing(smooth, velocity, acceleration, goal, self.printed_target)
 
     def fit(self, target: Array) -> Array:
         """Weights (n, d) of the kernels for a forcing term (N, d), Eq. (7.20)."""
