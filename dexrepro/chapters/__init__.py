@@ -103,6 +103,11 @@ def numbers() -> tuple[str, ...]:
     return tuple(sorted(folders(), key=natural))
 
 
+def names(number: str) -> list[str]:
+    """Names of a chapter's experiments, found without importing any."""
+    return sorted(_experiments(folders()[number]))
+
+
 def natural(text: str) -> list[tuple[int, str]]:
     """Sorting key under which C1.9 comes before C1.10."""
     return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", text)]
@@ -114,8 +119,8 @@ def load(number: str) -> Chapter:
     folder = Path(__file__).parent / OWN if number == OWN else folders()[number]
     package = _package(folder)
     order = list(getattr(package, "ORDER", ()))
-    names = sorted(_experiments(folder), key=lambda name: (order.index(name) if name in order else len(order), name))
-    experiments = tuple(Experiment(f"{package.__name__}.{name}", folder / name) for name in names)
+    found = sorted(_experiments(folder), key=lambda name: (order.index(name) if name in order else len(order), name))
+    experiments = tuple(Experiment(f"{package.__name__}.{name}", folder / name) for name in found)
     claims = [claim for experiment in experiments for claim in experiment.claims]
     claims += _part(package, folder, "claims", "CLAIMS")
     return Chapter(
