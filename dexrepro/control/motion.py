@@ -60,6 +60,13 @@ class Sampled:
         return Motion(self.position[k], self.velocity[k], self.acceleration[k])
 
 
+def rest(position: ArrayLike) -> Path:
+    """Stays at a position, of joints (n,) [rad] or an end point (d,) [m]."""
+    place = np.array(position, dtype=float)
+    here = Motion(place, np.zeros_like(place), np.zeros_like(place))
+    return lambda time: here
+
+
 def line(start: ArrayLike, end: ArrayLike, period: float) -> Path:
     """Straight between two places (d,) [m], there and back in a period [s], a sine about the middle."""
     first, last = np.array(start, dtype=float), np.array(end, dtype=float)
