@@ -200,9 +200,7 @@ def survey(path: Path, relative: Path, share: float, accepted: list[str]) -> tup
     for tests in (near, far):
         start = time.perf_counter()
         if not passes(name, path, None, tests, 600.0):
-            print(
-                f"{relative}: fail without any change, left out: {', '.join(test.name for test in tests)}", flush=True
-            )
+            print(f"{relative}: left out, failing as it is: {', '.join(t.name for t in tests)}", flush=True)
             tests.clear()
         times.append(3 * (time.perf_counter() - start) + 5)
     killed = 0
