@@ -81,7 +81,7 @@ class _Report:
 
     def _page(self, name: str, template: str | None = None, **values: Any) -> None:
         text = self.templates.get_template(f"{template or name}.html").render(**values)
-        (self.folder / f"{name}.html").write_text(text)
+        (self.folder / f"{name}.html").write_text(text, encoding="utf-8")
 
     def _write_sources(self, revision: str) -> None:
         (self.folder / "source").mkdir()
@@ -96,7 +96,7 @@ class _Report:
             for experiment in chapter["experiments"]:
                 self._write_series(experiment["series"])
         self._index_search(book)
-        (self.folder / "search-index.js").write_text(_script("window.SEARCH_INDEX", self.search))
+        (self.folder / "search-index.js").write_text(_script("window.SEARCH_INDEX", self.search), encoding="utf-8")
 
     # ------------------------------------------------------------------------------------------------------ the search
 
@@ -194,7 +194,7 @@ class _Report:
     def _write_series(self, item: Mapping[str, Any] | None) -> None:
         if item:
             text = _script(f"RECORDED[{json.dumps(item['name'])}]", item)
-            (self.folder / "files" / item["name"] / "series.js").write_text(text)
+            (self.folder / "files" / item["name"] / "series.js").write_text(text, encoding="utf-8")
 
     def _provenance(self, book: Book) -> str:
         runs = [experiment["run"] for chapter in book for experiment in chapter["experiments"]]
