@@ -193,7 +193,7 @@ def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
             path = Path(folder, group, option.strip("'\" ")).with_suffix(".yaml")
             if path.is_file():
                 try:
-                    content = yaml.safe_load(path.read_text()) or {}
+                    content = yaml.safe_load(path.read_text("utf-8")) or {}
                 except (UnicodeDecodeError, yaml.YAMLError) as error:
                     raise InputError(f"{path} is no YAML file: {' '.join(str(error).split())}") from error
                 if not isinstance(content, dict):
@@ -296,6 +296,10 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
         if name == "summary" or not re.fullmatch(r"[\w+-]+", name):
             raise InputError(
                 f"{experiment}.cases: '{name}' is not allowed as a name: use letters, digits and '_', and not 'summary'"
+            )
+        if twin := next((known for known in result if known != name and known.lower() == name.lower()), None):
+            raise InputError(
+                f"{experiment}.cases: '{name}' and '{twin}' differ in case alone: not every disk keeps both"
             )
         merged = copy.deepcopy(base)
         for key, value in overrides.items():

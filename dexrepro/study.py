@@ -293,7 +293,7 @@ def _most_influential(margins: Any, values: Sequence[Mapping[str, float]]) -> tu
 
 def _read(path: Path) -> Iterator[dict[str, Any]]:
     if path.exists():
-        for line in path.read_text().splitlines():
+        for line in path.read_text("utf-8").splitlines():
             with suppress(ValueError):  # a line may have been cut short
                 yield json.loads(line)
 

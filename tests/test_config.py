@@ -127,3 +127,8 @@ def test_interpolations_of_every_kind(value: str, expected: object) -> None:
 def test_an_interpolation_that_leads_nowhere_is_refused(value: str, word: str) -> None:
     with pytest.raises(InputError, match=word):
         resolved_block({"e": {"value": value}}, "e")
+
+
+def test_cases_that_differ_in_case_alone_are_refused() -> None:
+    with pytest.raises(InputError, match=r"e\.cases: 'A' and 'a' differ in case alone"):
+        experiment_cases({"e": {"x": 1, "cases": {"a": {}, "A": {}}}}, "e")

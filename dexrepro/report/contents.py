@@ -181,7 +181,7 @@ class Contents:
         block = [resolved_block(self.composed, experiment.name), experiment_cases(self.composed, experiment.name)]
         laws = relations.laws(block)
         own = {sources.place(thing) for thing in functions if thing}
-        texts = [path.read_text() for path in {path for path, _ in own}] + [law.__doc__ or "" for law in laws]
+        texts = [path.read_text("utf-8") for path in {path for path, _ in own}] + [law.__doc__ or "" for law in laws]
         return {
             "functions": [
                 {"name": thing.__name__, **self.code.link(*sources.place(thing))} for thing in functions if thing
@@ -202,7 +202,7 @@ class Contents:
         for suffix in (".svg", ".png"):
             copy(place / "figures" / f"{stem}{suffix}", target / f"{stem}{suffix}")
         _thumbnail(target / f"{stem}.png", target / f"{stem}.webp")
-        head = (target / f"{stem}.svg").read_text()
+        head = (target / f"{stem}.svg").read_text("utf-8")
         return {
             "id": identifier,
             "chapter": self.number,

@@ -78,7 +78,7 @@ class _Report:
 
     def _page(self, name: str, template: str | None = None, **values: Any) -> None:
         text = self.templates.get_template(f"{template or name}.html").render(**values)
-        (self.folder / f"{name}.html").write_text(text)
+        (self.folder / f"{name}.html").write_text(text, "utf-8")
 
     def _write_sources(self, revision: str) -> None:
         (self.folder / "source").mkdir()
