@@ -7,10 +7,11 @@ from collections.abc import Callable, Sequence
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
-Value = TypeVar("Value", Array, float)
+from dexrepro.arrays import Array
+
+Value = TypeVar("Value", covariant=True)
 
 
 class Motion(NamedTuple, Generic[Value]):
@@ -28,7 +29,8 @@ Path = Callable[[float], Motion[Array]]
 class Curve(Protocol):
     """A function of time that gives its own derivatives, such as scipy's CubicSpline."""
 
-    def __call__(self, time: float, nu: int = 0) -> Array: ...
+    def __call__(self, time: float, nu: int = 0) -> Array:
+        """Its derivative of order ``nu`` at a time [s]."""
 
 
 class Sampled:

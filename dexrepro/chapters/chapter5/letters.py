@@ -28,7 +28,7 @@ def demonstrations(
     if not files:
         return [demonstration(letter, config, rng) for _ in range(count)]
     time = np.linspace(0.0, config.dmp.duration, config.dmp.samples)
-    paths = recorded(files, count, config.dmp.samples, config.unit, axes=2)
+    paths = recorded(files, count, config.dmp.samples, config, axes=2)
     return [Demonstration.of(time, (1 + config.perturbation) * smoothed(time, p, config.hand.cutoff)) for p in paths]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 from dexrepro.config import InputError
 from dexrepro.control.motion import Path, circle, held, line
 from dexrepro.experiment import Config
-from dexrepro.primitives.recorded import read_path
+from dexrepro.primitives.recorded import Format, read_path
 
 
 def leader_path(config: Config) -> Path:
@@ -35,9 +36,12 @@ def _points(rows: Any) -> Path:
 
 
 def _csv(settings: Any) -> Path:
-    """A file with the columns time, x, y, z; ``{file: ..., unit: cm}`` where its lengths are not in metres."""
-    name, unit = (settings, "m") if isinstance(settings, str) else (settings.file, settings.unit)
-    time, position = read_path(name, unit)
+    """A file with the columns time, x, y, z, in metres and seconds unless its header or ``{file: ..., unit: cm}``
+    says otherwise; what else can be said of it is in :class:`dexrepro.primitives.recorded.Format`."""
+    given = {"file": settings} if isinstance(settings, str) else dict(settings)
+    if unknown := given.keys() - {"file", *(field.name for field in fields(Format))}:
+        raise ValueError(f"unknown key '{min(unknown)}'; there are: file, unit, time_unit, duplicates, encoding")
+    time, position = read_path(given.pop("file"), Format(**given))
     return held(PchipInterpolator(time, position), time[0], time[-1])
 
 
