@@ -229,7 +229,9 @@ class Contents:
     def _table(self, identifier: str, title: str, path: Path, target: Path) -> dict[str, Any]:
         frame = read_table(path)
         copy(path, target / path.name)
-        (target / f"{identifier}.tex").write_text(frame.to_latex(index=False, float_format="%.4g", escape=True))
+        (target / f"{identifier}.tex").write_text(
+            frame.to_latex(index=False, float_format="%.4g", escape=True), encoding="utf-8"
+        )
         base = f"files/{target.name}/{identifier}"
         return {
             "id": identifier,
