@@ -410,6 +410,10 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
             raise InputError(
                 f"{experiment}.cases: '{name}' is not allowed as a name: use letters, digits and '_', and not 'summary'"
             )
+        if twin := next((known for known in result if known != name and known.lower() == name.lower()), None):
+            raise InputError(
+                f"{experiment}.cases: '{name}' and '{twin}' differ in case alone: not every disk keeps both"
+            )
         merged = copy.deepcopy(base)
         for key, value in overrides.items():
             _assign(merged, key, copy.deepcopy(value), f"{experiment}.cases.{name}")

@@ -135,6 +135,11 @@ def test_an_interpolation_that_leads_nowhere_is_refused(value: str, word: str) -
         resolved_block({"e": {"value": value}}, "e")
 
 
+def test_cases_that_differ_in_case_alone_are_refused() -> None:
+    with pytest.raises(InputError, match=r"e\.cases: 'A' and 'a' differ in case alone"):
+        experiment_cases({"e": {"x": 1, "cases": {"a": {}, "A": {}}}}, "e")
+
+
 def test_a_block_inherits_what_it_does_not_say_itself() -> None:
     composed = inherited(
         {
