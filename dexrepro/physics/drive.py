@@ -126,21 +126,25 @@ class Posture:
         return Command(jacobian.T @ (command.force + force) + mass @ wanted, command.damping)
 
 
-def limited(
-    controller: Callable[[Sense], Command], limit: Array | float = math.inf, support: NominalModel | None = None
-) -> Callable[[Sense], Command]:
+class Limited:
     """A controller whose torques stay within +- limit [N m].
 
     support: a model whose gravity torque is added, what holds the arm alone, as an arm's maker does.
     """
 
-    def command(sense: Sense) -> Command:
-        torque, damping, _ = controller(sense)
-        if support is not None:
-            torque = torque + support.gravity(sense.position)
-        return Command(np.minimum(np.maximum(torque, -limit), limit), damping)
+    def __init__(
+        self,
+        controller: Callable[[Sense], Command],
+        limit: Array | float = math.inf,
+        support: NominalModel | None = None,
+    ) -> None:
+        self.law, self.limit, self.support = controller, limit, support
 
-    return command
+    def __call__(self, sense: Sense) -> Command:
+        torque, damping, _ = self.law(sense)
+        if self.support is not None:
+            torque = torque + self.support.gravity(sense.position)
+        return Command(np.minimum(np.maximum(torque, -self.limit), self.limit), damping)
 
 
 class HoldingDrive:
