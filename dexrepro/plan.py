@@ -104,12 +104,17 @@ def plan_chapter(
     results = writable(Path(config["results"])) if write else Path(config["results"])
     plans, skipped = [], {}
     for experiment in select(chapter, config["only"], config["figure"]):
-        absent = [name for name in experiment.requires if importlib.util.find_spec(name) is None]
-        if absent:
-            skipped[experiment.name] = f"needs {', '.join(absent)} (an optional extra of dexrepro)"
+        if needed := lacking(experiment):
+            skipped[experiment.name] = needed
             continue
         plans.append(_plan(chapter, experiment.name, config, shipped, results, perturbation))
     return plans, skipped
+
+
+def lacking(experiment: Experiment) -> str:
+    """What an experiment needs that is not installed, and how to get it ("" where nothing)."""
+    absent = [name for name in experiment.requires if importlib.util.find_spec(name) is None]
+    return f"needs {', '.join(absent)}: pip install {' '.join(absent)}" if absent else ""
 
 
 def _require_display() -> None:

@@ -15,7 +15,7 @@ from dexrepro import chapters
 from dexrepro.claims import Claim, Erratum
 from dexrepro.config import compose_chapter, experiment_cases, provenance, resolved_block
 from dexrepro.experiment import Experiment
-from dexrepro.plan import outdated, plan_chapter
+from dexrepro.plan import lacking, outdated, plan_chapter
 from dexrepro.report import equations, explorer, parameters, relations, sources, studies, verdicts, words
 from dexrepro.report.damage import check_result, is_safe, read_table
 from dexrepro.report.style import file_stem
@@ -44,6 +44,9 @@ class Contents:
         self.metrics: dict[str, Any] = {}
         self.experiments: list[dict[str, Any]] = []
         made = [e for e in self.chapter.experiments if (self.place / e.name / "run.json").exists()]
+        self.absent = [
+            {"name": e.name, "number": number, "why": lacking(e)} for e in self.chapter.experiments if e not in made
+        ]
         for experiment in made:
             check_result(self.place / experiment.name, "metrics.json", "claims.json", "config.yaml")
             self.metrics |= read_json(self.place / experiment.name / "metrics.json")
@@ -66,6 +69,7 @@ class Contents:
             "title": self.chapter.title,
             "fairness": getattr(self.chapter, "fairness", ""),
             "experiments": self.experiments,
+            "absent": self.absent,
             "claims": claims,
             "score": verdicts.score(claims),
             "symbols": parameters.index(self.composed, self.origins, rows),
@@ -188,7 +192,7 @@ class Contents:
         block = [resolved_block(self.composed, experiment.name), experiment_cases(self.composed, experiment.name)]
         laws = relations.laws(block)
         own = {sources.place(thing) for thing in functions if thing}
-        texts = [path.read_text() for path in {path for path, _ in own}] + [law.__doc__ or "" for law in laws]
+        texts = [path.read_text("utf-8") for path in {path for path, _ in own}] + [law.__doc__ or "" for law in laws]
         return {
             "functions": [
                 {"name": thing.__name__, **self.code.link(*sources.place(thing))} for thing in functions if thing
@@ -209,7 +213,7 @@ class Contents:
         for suffix in (".svg", ".png"):
             copy(place / "figures" / f"{stem}{suffix}", target / f"{stem}{suffix}")
         _thumbnail(target / f"{stem}.png", target / f"{stem}.webp")
-        head = (target / f"{stem}.svg").read_text()
+        head = (target / f"{stem}.svg").read_text("utf-8")
         return {
             "id": identifier,
             "chapter": self.number,
@@ -225,7 +229,9 @@ class Contents:
     def _table(self, identifier: str, title: str, path: Path, target: Path) -> dict[str, Any]:
         frame = read_table(path)
         copy(path, target / path.name)
-        (target / f"{identifier}.tex").write_text(frame.to_latex(index=False, float_format="%.4g", escape=True))
+        (target / f"{identifier}.tex").write_text(
+            frame.to_latex(index=False, float_format="%.4g", escape=True), encoding="utf-8"
+        )
         base = f"files/{target.name}/{identifier}"
         return {
             "id": identifier,
