@@ -172,7 +172,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         if not overrides and not extra_dir:
             return copy.deepcopy(shipped)
         composed = _compose([f"chapter='{chapter}'", *overrides, *search])
-    except (HydraException, OmegaConfBaseException, ValueError, TypeError) as error:
+    except (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, TypeError) as error:
         raise InputError(" ".join(str(error.__cause__ or error).split())) from error
     if unknown := [key for key in composed if key not in shipped]:
         if not extra_dir:
@@ -194,14 +194,21 @@ def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
         for option in chosen if isinstance(chosen, list) else [chosen]:
             path = Path(folder, override.key_or_group if override else "", f"{str(option).removesuffix('.yaml')}.yaml")
             if path.is_file():
-                try:
-                    content = yaml.safe_load(path.read_text()) or {}
-                except (UnicodeDecodeError, yaml.YAMLError) as error:
-                    raise InputError(f"{path} is no YAML file: {' '.join(str(error).split())}") from error
-                if not isinstance(content, dict):
-                    raise InputError(f"{path} holds no keys: it must consist of lines such as 'only: EXPERIMENT'")
-                keys += content
+                keys += read_config(path)
     return keys
+
+
+def read_config(path: Path) -> dict[str, Any]:
+    """The content of a configuration file. Raises InputError that names the file, and the line that is wrong."""
+    try:
+        content: Any = OmegaConf.to_container(OmegaConf.create(path.read_text("utf-8")), resolve=False)
+    except AssertionError:
+        content = None
+    except (yaml.YAMLError, OmegaConfBaseException, ValueError) as error:
+        raise InputError(f"{path} is no YAML file: {' '.join(str(error).split())}") from error
+    if not isinstance(content, dict) or not content or not all(isinstance(key, str) for key in content):
+        raise InputError(f"{path} holds no keys: it must consist of lines such as 'only: EXPERIMENT'")
+    return content
 
 
 def _offer(chapter: str) -> None:
@@ -209,7 +216,7 @@ def _offer(chapter: str) -> None:
     if chapter == chapters.OWN or not chapters.is_added(chapter):
         return
     for name, path in config_files(chapter).items():
-        node = OmegaConf.create({name: yaml.safe_load(path.read_text("utf-8"))})
+        node = OmegaConf.create({name: read_config(path)})
         ConfigStore.instance().store(f"{name}.yaml", node, group=f"chapter/{chapter}", package="_global_")
     defaults = {"defaults": [f"{chapter}/{name}" for name in config_files(chapter)]}
     ConfigStore.instance().store(f"{chapter}.yaml", defaults, group="chapter", package="_global_")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -13,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import dexrepro
-from dexrepro import chapters
+from dexrepro import chapters, cli
 
 ROOT = Path(dexrepro.__file__).parent.parent
 TOY = Path(__file__).parent / "toy"
@@ -76,3 +77,51 @@ def shell(tmp_path: Path) -> Shell:
         )
 
     return run
+
+
+Command = Callable[[str], tuple[int, str]]
+
+
+@pytest.fixture
+def bounded() -> Iterator[None]:
+    """A command that hangs fails its test."""
+
+    def late(*_: object) -> None:
+        raise TimeoutError("the command hangs")
+
+    signal.signal(signal.SIGALRM, late)
+    signal.alarm(60)
+    yield
+    signal.alarm(0)
+
+
+@pytest.fixture
+def command(toy: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
+    """Run a command as typed; its exit status and all it says. No fault may give a traceback."""
+    monkeypatch.setattr(sys, "path", [*sys.path])
+
+    def run(text: str) -> tuple[int, str]:
+        capfd.readouterr()
+        status = cli.main(text.split())
+        said = "".join(capfd.readouterr())
+        assert "Traceback" not in said
+        return status, said
+
+    return run
+
+
+@pytest.fixture
+def toy_result(toy: Path, command: Command, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The toy chapter has been run in this folder (once, for all tests)."""
+    kept = tmp_path_factory.getbasetemp() / "results-of-the-toy"
+    if not kept.exists():
+        assert command("run workers=1")[0] == 0
+        shutil.copytree("results", kept)
+    elif not Path("results").exists():
+        shutil.copytree(kept, "results")
+    return toy / "results/chapter90/decay"
+
+
+def whole(folder: Path) -> dict[str, bytes]:
+    """Every file of a result, none of which may be lost."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from dexrepro.control.contract import Array, Command, Kind, Measured
+from dexrepro.arrays import Array, Real
+from dexrepro.control.contract import Command, Kind, Measured
 from dexrepro.control.motion import Motion
 from dexrepro.networks import AdaptiveNetwork
 
@@ -67,7 +68,7 @@ class BarrierTracking:
         for network in self.networks:
             network.forget()
 
-    def diagnostics(self) -> Mapping[str, Any]:
+    def diagnostics(self) -> Mapping[str, Real]:
         """Nodes of D, C and G (3,), the force of the networks (d,) [N], and the squared length of the features of G."""
         nodes = np.array([network.nodes for network in self.networks])
         features = self.networks[2].features

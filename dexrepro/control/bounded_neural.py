@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dexrepro.arrays import Array
 from dexrepro.control.contract import (
-    Array,
     Command,
     Kind,
     Measured,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from dexrepro.control.contract import Array, Command, Kind, Measured, NominalModel
+from dexrepro.arrays import Array
+from dexrepro.control.contract import Command, Kind, Measured, NominalModel
 from dexrepro.control.motion import Motion
 
 

@@ -16,15 +16,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
-from typing import Any, ClassVar, Generic, Literal, NamedTuple, Protocol, TypeVar
+from typing import ClassVar, Generic, Literal, NamedTuple, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.control.motion import Motion
+from dexrepro.arrays import Array, Real
+from dexrepro.control.motion import Motion, Value
+from dexrepro.networks import AdaptiveNetwork
 
-Array = NDArray[np.float64]
-Value = TypeVar("Value", Array, float)
+Law_ = TypeVar("Law_")
 Kind = Literal["joint", "end_point", "holding"]
 EMPTY: Array = np.empty(0)
 KINDS: tuple[Kind, ...] = ("joint", "end_point", "holding")
@@ -80,10 +80,10 @@ class HoldingLaw(Protocol):
 
     kind: ClassVar[Kind]
 
-    def reset(self, measured: Measured[float]) -> None:
+    def reset(self, measured: Measured[Real]) -> None:
         """Start anew where the arm is when contact begins."""
 
-    def __call__(self, measured: Measured[float]) -> float:
+    def __call__(self, measured: Measured[Real]) -> Real:
         """Where the arm should be along the line of contact [m], once a control period."""
 
 
@@ -136,7 +136,7 @@ def coriolis(model: NominalModel, q: Array, dq: Array, vector: Array) -> Array:
     return result
 
 
-def build(law: Any, **offers: Any) -> Any:
+def build(law: Law_ | partial[Law_], **offers: object) -> Law_:
     """The law itself, or what a ``_partial_`` configuration of it makes of the offers its class ``needs``.
 
     Raises ValueError where the class cannot do without what the comparison does not offer.
@@ -157,7 +157,7 @@ def printed_forms(printed: Collection[str], known: Collection[str]) -> frozenset
     return frozenset(printed)
 
 
-def check(law: Any, kind: Kind) -> Any:
+def check(law: Law_, kind: Kind) -> Law_:
     """The law, if its declared kind is the one wanted. Raises ValueError with one sentence otherwise."""
     declared = getattr(law, "kind", None)
     if declared == kind and callable(law):
@@ -169,22 +169,22 @@ def check(law: Any, kind: Kind) -> Any:
     )
 
 
-def report(law: Any) -> Mapping[str, Any]:
+def report(law: object) -> Mapping[str, Real]:
     """What the law says of itself by ``diagnostics()``: numbers or arrays by name, nothing where it has none."""
     diagnostics = getattr(law, "diagnostics", None)
-    found: Mapping[str, Any] = {} if diagnostics is None else diagnostics()
+    found: Mapping[str, Real] = {} if diagnostics is None else diagnostics()
     return found
 
 
-def memory(law: Any) -> Any:
+def memory(law: object) -> AdaptiveNetwork | None:
     """The network of a law, built or still partial; None where it has none."""
     return law.keywords.get("network") if isinstance(law, partial) else getattr(law, "network", None)
 
 
-def channels(law: Any, *names: str) -> dict[str, Callable[[], Any]]:
+def channels(law: object, *names: str) -> dict[str, Callable[[], Real]]:
     """Probes for :meth:`World.run`: those of the named diagnostics that the law reports, each one channel."""
     return {name: lambda name=name: report(law)[name] for name in names if name in report(law)}  # type: ignore[misc]
 
 
-def _name(kind: Any) -> str:
+def _name(kind: object) -> str:
     return getattr(kind, "__name__", str(kind))

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from dexrepro.control.contract import Array, Command, Kind, Measured, Network
+from dexrepro.arrays import Array, Real
+from dexrepro.control.contract import Command, Kind, Measured, Network
 from dexrepro.control.motion import Motion
 
 TINY = 1e-9  # error below which the secant slope of the root is no longer increased
 
 
-def signed_power(x: Any, power: float) -> Any:
+def signed_power(x: Real, power: float) -> Real:
     """SIG^r(x), element by element: |x_i|^r sign(x_i), Eq. (3.12) without its square root."""
     return np.sign(x) * np.abs(x) ** power
 
@@ -63,11 +64,11 @@ class FixedTimeBackstepping:
 
     def _forget(self) -> None:
         self.virtual: Array | None = None
-        self.rate: Any = 0.0
+        self.rate: Real = 0.0
         if self.network is not None:
             self.network.forget()
 
-    def diagnostics(self) -> Mapping[str, Any]:
+    def diagnostics(self) -> Mapping[str, Real]:
         """Number of nodes of the network."""
         return {} if self.network is None else {"nodes": self.network.nodes}
 

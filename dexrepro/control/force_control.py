@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
+from dexrepro.arrays import Real
 from dexrepro.control.contract import Kind, Measured
 
 
@@ -15,14 +16,14 @@ class ForceControl:
 
     kind: ClassVar[Kind] = "holding"
 
-    def __init__(self, *, gain: Any, desired_force: Any) -> None:
+    def __init__(self, *, gain: Real, desired_force: Real) -> None:
         self.gain, self.desired_force = gain, desired_force
 
-    def reset(self, measured: Measured[Any]) -> None:
+    def reset(self, measured: Measured[Real]) -> None:
         """Take the present position as x_1(0)."""
         self._start = measured.position
 
-    def __call__(self, measured: Measured[Any]) -> Any:
+    def __call__(self, measured: Measured[Real]) -> Real:
         """Reference [m]."""
         return self._start + self.gain * (measured.force - self.desired_force)
 
@@ -35,14 +36,14 @@ class IntegralForceControl:
 
     kind: ClassVar[Kind] = "holding"
 
-    def __init__(self, *, rate: Any, desired_force: Any, dt: float) -> None:
+    def __init__(self, *, rate: Real, desired_force: Real, dt: float) -> None:
         self.rate, self.desired_force, self.dt = rate, desired_force, dt
 
-    def reset(self, measured: Measured[Any]) -> None:
+    def reset(self, measured: Measured[Real]) -> None:
         """Start the reference where the arm is."""
         self._reference = measured.position
 
-    def __call__(self, measured: Measured[Any]) -> Any:
+    def __call__(self, measured: Measured[Real]) -> Real:
         """Reference [m]."""
         self._reference = self._reference + self.dt * self.rate * (measured.force - self.desired_force)
         return self._reference

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dgesv
 
-from dexrepro.control.contract import Array, Command, Kind, Measured, Network
+from dexrepro.arrays import Array
+from dexrepro.control.contract import Command, Kind, Measured, Network
 from dexrepro.control.motion import Motion
 from dexrepro.control.prescribed_performance import PerformanceBound
 
@@ -20,7 +21,8 @@ from dexrepro.control.prescribed_performance import PerformanceBound
 class Kinematics(Protocol):
     """The part of a robot model that the law needs: the Jacobian at joint angles, whose first m rows are the task's."""
 
-    def jacobian(self, q: Array) -> Array: ...
+    def jacobian(self, q: Array) -> Array:
+        """(m or more, n) [m/rad], at joint angles (n,) [rad]."""
 
 
 @dataclass(frozen=True)

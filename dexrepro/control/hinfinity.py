@@ -8,7 +8,8 @@ from typing import ClassVar
 import numpy as np
 from scipy.linalg import solve_continuous_are
 
-from dexrepro.control.contract import Array, Command, Kind, Measured, NominalModel
+from dexrepro.arrays import Array
+from dexrepro.control.contract import Command, Kind, Measured, NominalModel
 from dexrepro.control.motion import Motion
 
 

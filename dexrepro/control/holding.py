@@ -12,10 +12,11 @@ e_z = z_r - z_A. ``printed=True`` takes the book's definition of e_f and keeps t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from dexrepro.arrays import Real
 from dexrepro.control.contract import HoldingLaw, Kind, Measured, report
 from dexrepro.control.passive_impedance import PassiveImpedance
 
@@ -37,8 +38,8 @@ class AutoregressiveHolding:
         *,
         dt: float,
         desired_force: float,
-        gain: Any,
-        estimator_gain: Any,
+        gain: Real,
+        estimator_gain: Real,
         adaptation: float,
         lags: int,
         adapt: bool = True,
@@ -49,7 +50,7 @@ class AutoregressiveHolding:
         self.estimator_gain, self.adaptation, self.lags = estimator_gain, adaptation, lags
         self.adapt, self._sign, self.speed_limit = adapt, (1.0 if printed else -1.0), speed_limit
 
-    def reset(self, measured: Measured[Any]) -> None:
+    def reset(self, measured: Measured[Real]) -> None:
         """Start with zero weights at the present position [m], whose shape is that of the batch."""
         start = np.array(measured.position, float)
         self.weights = np.zeros((self.lags + 1, *start.shape))
@@ -57,11 +58,11 @@ class AutoregressiveHolding:
         self.regressor[0] = 1.0
         self.estimate, self.reference = np.zeros_like(start), start
 
-    def diagnostics(self) -> Mapping[str, Any]:
+    def diagnostics(self) -> Mapping[str, Real]:
         """Weights (m + 1, …) and estimate of the contact position [m]."""
         return {"weights": self.weights, "estimate": self.estimate}
 
-    def __call__(self, measured: Measured[Any], target: Any = None) -> Any:
+    def __call__(self, measured: Measured[Real], target: Real | None = None) -> Real:
         """Reference displacement z_r [m].
 
         target: the contact position z_d(t - dt) of Eq. (1.31), which nobody can measure; without it z_A stands for
@@ -93,16 +94,16 @@ class Compliant:
     def __init__(self, *, law: HoldingLaw, impedance: PassiveImpedance) -> None:
         self.law, self.impedance = law, impedance
 
-    def reset(self, measured: Measured[Any]) -> None:
+    def reset(self, measured: Measured[Real]) -> None:
         """Start both, the impedance from no lead."""
         self.law.reset(measured)
         self.impedance.reset(measured._replace(position=np.zeros_like(measured.position, dtype=float)))
 
-    def diagnostics(self) -> Mapping[str, Any]:
+    def diagnostics(self) -> Mapping[str, Real]:
         """Those of the law."""
         return report(self.law)
 
-    def __call__(self, measured: Measured[Any], *target: Any) -> Any:
+    def __call__(self, measured: Measured[Real], *target: Real) -> Real:
         """Reference [m]; ``target`` is handed on to the law."""
         return self.law(measured, *target) + self.impedance(measured)
 
@@ -115,11 +116,11 @@ class FixedDistance:
     def __init__(self, *, dt: float, displacement: float, speed: float) -> None:
         self.displacement, self.step = displacement, speed * dt
 
-    def reset(self, measured: Measured[Any]) -> None:
+    def reset(self, measured: Measured[Real]) -> None:
         """Start the reference where the arm is."""
         self.reference = np.array(measured.position, float)
 
-    def __call__(self, measured: Measured[Any]) -> Any:
+    def __call__(self, measured: Measured[Real]) -> Real:
         """Reference [m]."""
         self.reference = self.reference + np.clip(self.displacement - self.reference, -self.step, self.step)
         return self.reference

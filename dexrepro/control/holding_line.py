@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dexrepro.arrays import Real
 
 
 class HoldingLineRegulation:
@@ -15,14 +15,15 @@ class HoldingLineRegulation:
     printed: False takes the opposite sign, to show what that reading does.
     """
 
-    def __init__(self, *, gain: Any, printed: bool = True) -> None:
+    def __init__(self, *, gain: Real, printed: bool = True) -> None:
         self.gain, self._sign = gain, (-1.0 if printed else 1.0)
         self.reset()
 
     def reset(self) -> None:
-        self.displacement: Any = 0.0
+        """Back to no displacement."""
+        self.displacement: Real = 0.0
 
-    def __call__(self, force: Any) -> Any:
+    def __call__(self, force: Real) -> Real:
         """Lateral displacement [m] after one more sample of the lateral force [N]; floats, or arrays of one shape."""
         self.displacement = self.displacement + self._sign * self.gain * force
         return self.displacement

@@ -8,10 +8,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar
+from typing import ClassVar, TypedDict, Unpack
 
+from dexrepro.arrays import Real
 from dexrepro.control.contract import HoldingLaw, Kind, Measured, report
 from dexrepro.control.movement_estimation import MovementEstimation
+
+
+class Shared(TypedDict):
+    """What both references take."""
+
+    estimation: MovementEstimation | KnownMovement
+    desired_force: Real
+    smoothing_rate: float
+    smoothing_power: float
+    dt: float
 
 
 class NonImpedanceReference:
@@ -29,7 +40,7 @@ class NonImpedanceReference:
         self,
         *,
         estimation: MovementEstimation | KnownMovement,
-        desired_force: Any,
+        desired_force: Real,
         smoothing_rate: float,
         smoothing_power: float,
         dt: float,
@@ -37,17 +48,17 @@ class NonImpedanceReference:
         self.estimation, self.desired_force, self.dt = estimation, desired_force, dt
         self.smoothing_rate, self.smoothing_power = smoothing_rate, smoothing_power
 
-    def reset(self, measured: Measured[Any]) -> None:
+    def reset(self, measured: Measured[Real]) -> None:
         """Start the estimation anew and fade in from here."""
         self.estimation.reset()
         self._start, self._sample = measured.position, 0
 
-    def diagnostics(self) -> Mapping[str, Any]:
+    def diagnostics(self) -> Mapping[str, Real]:
         """The partner's rest position [m], its velocity [m/s] and the object's stiffness [N/m] as believed."""
         it = self.estimation
         return {"rest_position": it.position, "stiffness": it.stiffness, "rest_velocity": it.velocity}
 
-    def __call__(self, measured: Measured[Any]) -> Any:
+    def __call__(self, measured: Measured[Real]) -> Real:
         """Reference [m]."""
         self.estimation(measured.position, measured.force)
         time = self._sample * self.dt
@@ -55,7 +66,7 @@ class NonImpedanceReference:
         fade = -math.expm1(-self.smoothing_rate * time**self.smoothing_power)
         return self._start + fade * (self._target() - self._start)
 
-    def _target(self) -> Any:
+    def _target(self) -> Real:
         estimate = self.estimation
         return estimate.position - self.desired_force / estimate.stiffness
 
@@ -66,11 +77,11 @@ class ImpedanceReference(NonImpedanceReference):
     mass, damping, stiffness: m [kg], b [N s/m], k [N/m] of the target impedance, Eq. (2.25).
     """
 
-    def __init__(self, *, mass: Any, damping: Any, stiffness: Any, **shared: Any) -> None:
+    def __init__(self, *, mass: Real, damping: Real, stiffness: Real, **shared: Unpack[Shared]) -> None:
         super().__init__(**shared)
         self.mass, self.damping, self.stiffness = mass, damping, stiffness
 
-    def _target(self) -> Any:
+    def _target(self) -> Real:
         estimate = self.estimation
         lead = (self.damping * estimate.velocity + self.mass * estimate.acceleration) / self.stiffness
         return super()._target() + lead
@@ -88,16 +99,16 @@ class FadeIn:
         self.law, self.dt = law, dt
         self.smoothing_rate, self.smoothing_power = smoothing_rate, smoothing_power
 
-    def reset(self, measured: Measured[Any]) -> None:
+    def reset(self, measured: Measured[Real]) -> None:
         """Start the law and fade in from here."""
         self.law.reset(measured)
         self._start, self._sample = measured.position, 0
 
-    def diagnostics(self) -> Mapping[str, Any]:
+    def diagnostics(self) -> Mapping[str, Real]:
         """Those of the law."""
         return report(self.law)
 
-    def __call__(self, measured: Measured[Any]) -> Any:
+    def __call__(self, measured: Measured[Real]) -> Real:
         """Reference [m]."""
         fade = -math.expm1(-self.smoothing_rate * (self._sample * self.dt) ** self.smoothing_power)
         self._sample += 1
@@ -116,9 +127,10 @@ class KnownMovement:
         self.position = self.velocity = self.acceleration = 0.0
 
     def reset(self) -> None:
+        """Take the movement as it is now, without acceleration."""
         self.position, self.velocity = self._movement()
 
-    def __call__(self, position: Any, force: Any) -> None:
+    def __call__(self, position: Real, force: Real) -> None:
         before = self.velocity
         self.position, self.velocity = self._movement()
         self.acceleration = (self.velocity - before) / self._dt

@@ -7,14 +7,12 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.control.contract import Measured
 from dexrepro.control.interaction_optimum import InteractionCost
 from dexrepro.control.motion import Motion
 from dexrepro.control.policy_iteration import Learned, Windows, policy_iteration
-
-Array = NDArray[np.float64]
 
 WAITING, EXPLORING, SOLVING, TRANSFERRING, DONE = range(5)
 
@@ -30,9 +28,11 @@ class Gain(Protocol):
     phase: int
     learned: Learned | None
 
-    def reset(self) -> None: ...
+    def reset(self) -> None:
+        """Back to the gain before contact."""
 
-    def update(self, indentation: float, reference: float, force: float) -> None: ...
+    def update(self, indentation: float, reference: float, force: float) -> None:
+        """Advance one control period: indentation x [m], reference s, force tau_e of the object on the robot [N]."""
 
 
 def soft_transfer(initial: Array, optimal: Array, progress: Array | float) -> Array:
@@ -49,10 +49,10 @@ class ConstantGain:
         self.exploration, self.phase, self.learned = 0.0, WAITING, None
 
     def reset(self) -> None:
-        pass
+        """The gain stays."""
 
     def update(self, indentation: float, reference: float, force: float) -> None:
-        pass
+        """The gain stays."""
 
 
 def exploration_windows(samples: Array, dt: float, length: int, exosystem: float | None, start: float = 1.0) -> Windows:
@@ -100,6 +100,7 @@ class LearnedGain:
         self.reset()
 
     def reset(self) -> None:
+        """Back to K_0, with no data."""
         self.gain: Sequence[float] = self.initial.tolist()
         self.exploration, self.phase = 0.0, WAITING
         self.learned: Learned | None = None
@@ -117,7 +118,7 @@ class LearnedGain:
         return np.array(self._samples).reshape(-1, 3)
 
     def update(self, indentation: float, reference: float, force: float) -> None:
-        """Advance one control period: indentation x [m], reference s, force tau_e of the object on the robot [N]."""
+        """One control period of the algorithm."""
         elapsed = self._steps * self.dt
         self._steps += 1
         if self.phase == WAITING and elapsed >= self.wait:
@@ -159,6 +160,7 @@ class IntegratingReference:
         self.mobility, self.bandwidth, self.dt = mobility, bandwidth, dt
 
     def acceleration(self, state: Motion[float], force: float, desired: float, target: float) -> float:
+        """Acceleration [m/s^2] of x_0 for tau_e = ``force`` and f_d = ``desired`` [N]; ``target`` is not used."""
         return self.bandwidth * (self.mobility * (force - desired) - state.velocity)
 
 
@@ -169,6 +171,7 @@ class StaticReference:
         self.rate, self.dt = rate, dt
 
     def acceleration(self, state: Motion[float], force: float, desired: float, target: float) -> float:
+        """Acceleration [m/s^2] of x_0 towards ``target`` [m], where the measured force would balance."""
         return self.rate**2 * (target - state.position) - 2.0 * self.rate * state.velocity
 
 
@@ -199,6 +202,7 @@ class InteractionLaw:
         self.reset()
 
     def reset(self) -> None:
+        """Forget the surface and what the gain has learned."""
         self.gain.reset()
         self.surface: float | None = None
         self.desired_force = 0.0

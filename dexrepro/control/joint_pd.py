@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from dexrepro.control.contract import Array, Command, Kind, Measured
+from dexrepro.arrays import Array, Real
+from dexrepro.control.contract import Command, Kind, Measured
 from dexrepro.control.motion import Motion
 
 
@@ -16,7 +17,7 @@ class JointPD:
 
     kind: ClassVar[Kind] = "joint"
 
-    def __init__(self, *, stiffness: Any, damping: Any) -> None:
+    def __init__(self, *, stiffness: Real, damping: Real) -> None:
         self.stiffness, self.damping = stiffness, damping
 
     def reset(self, measured: Measured[Array]) -> None:

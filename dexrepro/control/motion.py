@@ -7,10 +7,11 @@ from collections.abc import Callable, Sequence
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
-Value = TypeVar("Value", Array, float)
+from dexrepro.arrays import Array
+
+Value = TypeVar("Value", covariant=True)
 
 
 class Motion(NamedTuple, Generic[Value]):
@@ -28,7 +29,8 @@ Path = Callable[[float], Motion[Array]]
 class Curve(Protocol):
     """A function of time that gives its own derivatives, such as scipy's CubicSpline."""
 
-    def __call__(self, time: float, nu: int = 0) -> Array: ...
+    def __call__(self, time: float, nu: int = 0) -> Array:
+        """Its derivative of order ``nu`` at a time [s]."""
 
 
 class Sampled:
@@ -56,6 +58,13 @@ class Sampled:
     def __call__(self, time: float) -> Motion[Array]:
         k = self.index(time)
         return Motion(self.position[k], self.velocity[k], self.acceleration[k])
+
+
+def rest(position: ArrayLike) -> Path:
+    """Stays at a position, of joints (n,) [rad] or an end point (d,) [m]."""
+    place = np.array(position, dtype=float)
+    here = Motion(place, np.zeros_like(place), np.zeros_like(place))
+    return lambda time: here
 
 
 def line(start: ArrayLike, end: ArrayLike, period: float) -> Path:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
+from dexrepro.arrays import Real
 from dexrepro.control.contract import Kind, Measured
 
 
@@ -16,14 +17,15 @@ class PassiveImpedance:
 
     kind: ClassVar[Kind] = "holding"
 
-    def __init__(self, *, mass: Any, damping: Any, desired_force: Any, dt: float) -> None:
+    def __init__(self, *, mass: Real, damping: Real, desired_force: Real, dt: float) -> None:
         self.mass, self.damping, self.desired_force, self.dt = mass, damping, desired_force, dt
 
-    def reset(self, measured: Measured[Any]) -> None:
+    def reset(self, measured: Measured[Real]) -> None:
         """Start the reference at rest where the arm is."""
-        self._position, self.velocity = measured.position, 0.0
+        self._position = measured.position
+        self.velocity: Real = 0.0
 
-    def __call__(self, measured: Measured[Any]) -> Any:
+    def __call__(self, measured: Measured[Real]) -> Real:
         """Reference [m]."""
         error, velocity = measured.force - self.desired_force, self.velocity
         middle = velocity + 0.5 * self.dt * (error - self.damping * velocity) / self.mass

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from dexrepro.arrays import Row
 from dexrepro.control.contract import Command, Kind, Measured
 from dexrepro.control.motion import Motion
+
+if TYPE_CHECKING:
+    from dexrepro.robots.planar import PlanarChain
 
 
 class TargetImpedance:
@@ -25,7 +29,7 @@ class TargetImpedance:
     def __init__(
         self,
         *,
-        model: Any,
+        model: PlanarChain[float],
         mass: float,
         damping: float,
         stiffness: float,
@@ -37,10 +41,10 @@ class TargetImpedance:
         self.mass, self.damping, self.stiffness = mass, damping, stiffness
         self.across, self.null_damping = across, null_damping
 
-    def reset(self, measured: Measured[Any]) -> None:
+    def reset(self, measured: Measured[Row[float]]) -> None:
         """Nothing is remembered."""
 
-    def __call__(self, measured: Measured[Any], desired: Motion[Any]) -> Command:
+    def __call__(self, measured: Measured[Row[float]], desired: Motion[Row[float]]) -> Command:
         """Torque [N m] from angles, rates and the force at the tip, for a reference position (x_r, y_d) [m] at rest."""
         _, _, _, force, q, dq = measured
         model, target = self.model, desired.position
@@ -57,5 +61,5 @@ class TargetImpedance:
         determinant = xx * yy - xy * xy
         u, v = (yy * ax - xy * ay) / determinant, (xx * ay - xy * ax) / determinant
         rates = (x1 * u + y1 * v - decay * dq[0], x2 * u + y2 * v - decay * dq[1], x3 * u + y3 * v - decay * dq[2])
-        torque: Any = [t - c for t, c in zip(model.torque(q, dq, rates), model.tip_torque(q, force))]
+        torque: Any = [t - c for t, c in zip(model.torque(q, dq, rates), model.tip_torque(q, (force[0], force[1])))]
         return Command(torque)

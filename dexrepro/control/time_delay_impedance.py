@@ -8,7 +8,8 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dexrepro.control.contract import Array, Command, Kind, Measured, NominalModel, coriolis, printed_forms
+from dexrepro.arrays import Array
+from dexrepro.control.contract import Command, Kind, Measured, NominalModel, coriolis, printed_forms
 from dexrepro.control.motion import Motion
 
 

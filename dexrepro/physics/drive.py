@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Protocol
+from typing import Protocol, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.control.contract import Command, HoldingLaw, Law, Measured, NominalModel, check
 from dexrepro.control.motion import Motion, Path
 from dexrepro.physics.plant import Sense
-
-Array = NDArray[np.float64]
 
 
 class JointDrive:
@@ -46,8 +44,11 @@ class JointDrive:
 class Kinematics(Protocol):
     """An end point (d,) [m] and its Jacobian (d, n) at joint angles (n,) [rad]."""
 
-    def position(self, q: Array) -> Array: ...
-    def jacobian(self, q: Array) -> Array: ...
+    def position(self, q: Array) -> Array:
+        """End point (d,) [m]."""
+
+    def jacobian(self, q: Array) -> Array:
+        """Its Jacobian (d, n) [m/rad]."""
 
 
 class EndPointDrive:
@@ -163,7 +164,7 @@ class HoldingDrive:
         since, last = self._before
         rate = (position - last) / (time - since) if time > since else 0.0
         self._before = time, position
-        wanted = self.law(Measured(time, position, rate, force))
+        wanted = cast(float, self.law(Measured(time, position, rate, force)))
         limit = self._limit
         self.reference = wanted if limit == math.inf else self.reference + clip(wanted - self.reference, limit)
         return self.reference

@@ -9,17 +9,17 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
 from PIL import Image
 
 from dexrepro import chapters
 from dexrepro.claims import Claim, Erratum
 from dexrepro.config import compose_chapter, experiment_cases, provenance, resolved_block
 from dexrepro.experiment import Experiment
+from dexrepro.plan import outdated, plan_chapter
 from dexrepro.report import equations, explorer, parameters, relations, sources, studies, verdicts, words
-from dexrepro.report.damage import check_result
+from dexrepro.report.damage import check_result, is_safe, read_table
 from dexrepro.report.style import file_stem
-from dexrepro.storage import read_json
+from dexrepro.storage import read_json, read_yaml
 
 SCALE = 1.7  # pixels a point of a figure
 THUMBNAIL = 240  # pixels
@@ -45,8 +45,10 @@ class Contents:
         self.experiments: list[dict[str, Any]] = []
         made = [e for e in self.chapter.experiments if (self.place / e.name / "run.json").exists()]
         for experiment in made:
-            check_result(self.place / experiment.name, "metrics.json", "claims.json")
+            check_result(self.place / experiment.name, "metrics.json", "claims.json", "config.yaml")
             self.metrics |= read_json(self.place / experiment.name / "metrics.json")
+        plans = plan_chapter(number, write=False)[0] if made else []
+        self.plans = {plan.experiment: plan for plan in plans}
         self.definitions = relations.definitions(self.chapter.folder) if made else {}
         self.errata = {item.id: self._erratum(item) for item in self.chapter.errata} if made else {}
         self.experiments = [self._experiment(experiment) for experiment in made]
@@ -95,9 +97,11 @@ class Contents:
         figures = [
             self._figure(identifier, figure.caption, figure.alt, place, target)
             for identifier, figure in experiment.figures.items()
-            if (place / "figures" / f"{file_stem(identifier)}.svg").exists()
+            if is_safe(place / "figures" / f"{file_stem(identifier)}.svg")
         ]
         series = explorer.write(place, target, run["cases"], experiment.film)
+        if series:
+            series["scene"] = explorer.scene(place, target, experiment)
         factor = f", {run['real_time_factor']:.1f} times real time" if run["real_time_factor"] else ""
         packages = ", ".join(f"{name} {version}" for name, version in run["packages"].items())
         return {
@@ -120,7 +124,10 @@ class Contents:
             ],
             "study": study,
             "series": series,
-            "parameters": parameters.table(experiment.name, self.composed, self.origins),
+            "parameters": parameters.table(
+                experiment.name, self.composed, self.origins, read_yaml(place / "config.yaml")
+            ),
+            "outdated": outdated(self.plans[experiment.name], run) if experiment.name in self.plans else "",
             "references": [
                 {**vars(item), "ours": self.metrics.get(item.metric)}
                 for item in self.chapter.references
@@ -216,7 +223,7 @@ class Contents:
         }
 
     def _table(self, identifier: str, title: str, path: Path, target: Path) -> dict[str, Any]:
-        frame = pd.read_csv(path)
+        frame = read_table(path)
         copy(path, target / path.name)
         (target / f"{identifier}.tex").write_text(frame.to_latex(index=False, float_format="%.4g", escape=True))
         base = f"files/{target.name}/{identifier}"

@@ -10,10 +10,16 @@ from dexrepro.config import Provenance, resolved_block
 from dexrepro.report import symbols
 
 
-def table(experiment: str, composed: Mapping[str, Any], origins: Mapping[str, Provenance]) -> list[dict[str, Any]]:
-    """Every parameter of an experiment; ``home`` is the key whose comment names the symbol, None without a symbol."""
+def table(
+    experiment: str, composed: Mapping[str, Any], origins: Mapping[str, Provenance], run: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """Every parameter of an experiment with its value in the run; ``home`` is the key whose comment names the symbol.
+
+    ``home`` is None without a symbol; ``run`` is the configuration that was run, which may be another than the present.
+    """
     rows = []
-    for key, value in _flat(resolved_block(composed, experiment), experiment):
+    used = {key: value for key, value in run.items() if key != "cases"}
+    for key, value in _flat(used or resolved_block(composed, experiment), experiment):
         origin, home = _origin(key, composed, origins)
         rows.append({"key": key, "value": value, "home": home, **_shown(origin)})
     return rows

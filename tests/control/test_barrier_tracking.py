@@ -104,3 +104,30 @@ def test_a_reset_law_repeats_itself():
     first = drive(law, duration=0.2)
     law.reset(at(np.zeros(2)))
     assert np.array_equal(drive(law, duration=0.2), first)
+
+
+def test_before_anything_is_learned_the_force_is_barrier_velocity_and_robust_term():
+    """F = -z1 / cos^2(pi z1^2 / (2 iota^2)) - K_p z2 - K_r sgn(z2), Eq. (8.31), with z2 = x' - x_0' + K_1 phi."""
+    law, x, v = controller(), np.array([0.23, 0.18]), np.array([0.05, -0.02])
+    target = Motion(np.array([0.21, 0.2]), np.array([0.01, 0.03]), np.array([0.2, -0.1]))
+    z1 = x - target.position
+    phi = BOUND**2 / (2 * np.pi * z1) * np.sin(np.pi * z1**2 / BOUND**2)
+    z2 = v - target.velocity + 80 * phi
+    force = law(at(x, np.zeros(2), v), target).force
+    assert force == pytest.approx(-z1 / np.cos(np.pi * z1**2 / (2 * BOUND**2)) ** 2 - 60 * z2 - 5 * np.sign(z2))
+
+
+def test_the_inertia_learns_from_the_rate_of_the_virtual_velocity():
+    """dW_D/dt = -Gamma S (z2 alpha'^T), Eq. (8.38), with alpha' by a difference along the motion."""
+    law, x, v = controller(), np.array([0.23, 0.18]), np.array([0.05, -0.02])
+    target = Motion(np.array([0.21, 0.2]), np.array([0.01, 0.03]), np.array([0.2, -0.1]))
+
+    def alpha(dt):
+        z1 = x + dt * v - target.position - dt * target.velocity
+        return target.velocity + dt * target.acceleration - 80 * np.array([barrier_terms(z, BOUND)[0] for z in z1])
+
+    law(at(x, np.zeros(2), v), target)
+    rate = (alpha(1e-6) - alpha(-1e-6)) / 2e-6
+    inertia = law.networks[0]
+    expected = -1e-3 * 100.0 * np.outer(inertia.features, np.outer(v - alpha(0.0), rate))
+    assert inertia.weights == pytest.approx(expected, rel=1e-6)

@@ -117,3 +117,23 @@ def test_fixed_distance_is_reached_at_the_set_speed_and_kept():
     path = [float(law(at(0.0))) for _ in range(60)]
     assert path[9] == pytest.approx(-0.03)
     assert path[-1] == -0.15
+
+
+def test_the_regressor_holds_the_present_displacement_and_the_ones_before():
+    """Z = [1, z_A(t), z_A(t - dt), ...], Eq. (1.27); the weights learn from it in the same call, Eq. (1.30)."""
+    law = proposed(lags=3)
+    law.reset(at(0.0))
+    weights, estimate = np.zeros(4), 0.0
+    for z, force, regressor in (
+        (0.1, 4.0, [1, 0.1, 0, 0]),
+        (0.3, 7.0, [1, 0.3, 0.1, 0]),
+        (0.2, 9.0, [1, 0.2, 0.3, 0.1]),
+    ):
+        law(at(z, force))
+        error = estimate - z
+        rate = weights @ regressor - 2.0 * error
+        weights = weights - DT * (error + 1e-4 * (DESIRED - force)) * np.array(regressor)
+        estimate += DT * rate
+        assert law.regressor == pytest.approx(np.array(regressor))
+        assert law.weights == pytest.approx(weights)
+        assert law.estimate == pytest.approx(estimate)

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from dexrepro.arrays import Array
 from dexrepro.chapters.chapter1.followers import ComputedTorque, Follower
 from dexrepro.control.contract import HoldingLaw
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.control.potential_field import PotentialField
 from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.plant import Sense
-
-Array = NDArray[np.float64]
 
 
 class AssistiveFollower:

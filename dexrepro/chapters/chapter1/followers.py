@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.inverse_kinematics import InverseKinematics
 from dexrepro.robots.planar import PlanarChain
 from dexrepro.robots.rotations import rotation_error
-
-Array = NDArray[np.float64]
 
 
 class ComputedTorque:

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import signal
 
+from dexrepro.arrays import Array
 from dexrepro.humans.operator import Tremor, minimum_jerk
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Array, Rng
 from dexrepro.control.computed_torque import ComputedTorque
 from dexrepro.control.contract import Measured
 from dexrepro.control.holding_line import HoldingLineRegulation
@@ -25,8 +24,6 @@ from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.baxter import baxter, torso
 from dexrepro.robots.inverse_kinematics import InverseKinematics, solve
-
-Array = NDArray[np.float64]
 
 # The grippers face each other along y: columns are the gripper's axes in the torso frame.
 FACING = {

@@ -17,6 +17,7 @@ from dexrepro.physics.plant import Controller
 from dexrepro.physics.world import World
 from dexrepro.robots.planar import Links, PlanarChain, planar
 
+REST = (0.0, 0.0)
 ESTIMATE = ("rest_position", "stiffness", "rest_velocity")
 
 
@@ -100,7 +101,7 @@ class ImpedanceServo:
 
     def __call__(self, sense: Any, target: tuple[float, float], links: Links | None = None) -> Command:
         measured = Measured(sense.time, math.nan, math.nan, sense.felt[:2], sense.angles, sense.rates)
-        return self._law(measured, Motion(target, 0.0, 0.0))
+        return self._law(measured, Motion(target, REST, REST))
 
 
 class Leader:
@@ -137,7 +138,7 @@ class Follower:
             self._home = x, y
             self._law.reset(sense.time, x)
         fx, fy, _ = sense.felt
-        along, across = self._law(sense.time, x, fx), self._home[1] + self._regulation(fy)
+        along, across = self._law(sense.time, x, fx), self._home[1] + float(self._regulation(fy))
         self.reference = along, across
         low, high = self._low, self._high
         return self._servo(sense, (low if along < low else high if along > high else along, across), links)

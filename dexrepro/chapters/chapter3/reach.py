@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.chapters.chapter3.scene import ARM, ELBOW, WRIST, gripper_arm
 from dexrepro.control.contract import Command, Measured, report
 from dexrepro.control.motion import Motion, quintic
@@ -23,7 +23,6 @@ from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import joint_frames
 from dexrepro.robots.rotations import cross, rotation_matrix, tilt
 
-Array = NDArray[np.float64]
 BEYOND = 1.6  # a retreat's length over that of the insertion
 CARRIERS = (5, 6)  # number of joints that move the segments e1-w1 and w1-tip (turning w2 leaves its axis in place)
 

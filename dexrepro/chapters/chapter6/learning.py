@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
+from dexrepro.arrays import Array
 from dexrepro.experiment import Config
 from dexrepro.primitives.barrier import Constraint, Gains
 from dexrepro.primitives.constrained import LAWS, Law, Path, Reference, Skill, rollout, safety_filter
@@ -15,8 +13,6 @@ from dexrepro.primitives.demonstration import Demonstration
 from dexrepro.primitives.dmp import DMP, Trajectory
 from dexrepro.primitives.kernels import GaussianKernels
 from dexrepro.primitives.transformation import SpringDamper
-
-Array = NDArray[Any]
 
 
 def learn(time: Array, path: Array, dmp: Config) -> DMP:

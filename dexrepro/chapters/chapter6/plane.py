@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.chapters.chapter6 import learning
 from dexrepro.experiment import Config
 from dexrepro.humans.segmentation import change_point, slowest_point
@@ -17,7 +17,6 @@ from dexrepro.primitives.dmp import DMP, Trajectory
 from dexrepro.primitives.obstacles import Polygon
 from dexrepro.primitives.reference_path import arc, detour, differentiable
 
-Array = NDArray[Any]
 CUTS = {"ruptures": change_point, "slowest": slowest_point}
 
 

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import arms, learning
@@ -76,7 +73,7 @@ def _learned(config: Config, rng: np.random.Generator) -> DMP:
     return learning.learn(time * config.duration / time[-1], mean, config.dmp)
 
 
-def _path(config: Config, primitive: DMP, movement: Trajectory) -> tuple[NDArray[Any], Reference, int]:
+def _path(config: Config, primitive: DMP, movement: Trajectory) -> tuple[Array, Reference, int]:
     """Path (n, 2) [cm] of the law, its reference round the new box, and the number of projected steps."""
     reference = _reference(config, movement)
     skill, batch = learning.skill([primitive], [movement]), learning.stack([reference])

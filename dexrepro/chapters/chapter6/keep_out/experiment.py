@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning
@@ -72,7 +69,7 @@ def _detour(config: Config, movement: Trajectory, centre: Reference) -> Referenc
     shape = np.exp(-0.5 * u**2)
     shapes = [shape, -u / w * shape, (u**2 - 1) / w**2 * shape]
     need = config.radius + config.cdmp.margin
-    parts: list[list[NDArray[Any]]] = [[], [], []]
+    parts: list[list[Array]] = [[], [], []]
     for i, (offset, speed) in enumerate(zip(config.offsets, config.speeds)):
         side = -np.sign(speed) if speed else -np.sign(offset) or 1.0
         for size in np.arange(0, 5, 0.05):

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning, plane
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.waypoints import minimum_jerk
@@ -19,7 +18,7 @@ from dexrepro.primitives.coupling import Term, coupled_rollout, dynamic_potentia
 from dexrepro.primitives.obstacles import Polygon, clearance
 
 RATE = 0.0
-Terms = Callable[[Polygon, NDArray[Any], NDArray[Any]], Term]
+Terms = Callable[[Polygon, Array, Array], Term]
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
@@ -108,7 +107,7 @@ def _constrained(
     return {"path": pd.DataFrame(path.position[:, 0], columns=["x", "y"]), "noise": pd.DataFrame(rows)}
 
 
-def _straight(config: Config, runs: int) -> tuple[Skill, NDArray[Any], float]:
+def _straight(config: Config, runs: int) -> tuple[Skill, Array, float]:
     """A straight 10 cm reach for some runs, their starts, and the step [s]."""
     time = np.linspace(0, config.reach_duration, 201)
     path = np.stack([10 * minimum_jerk(time / config.reach_duration), np.zeros_like(time)], axis=1)

@@ -6,10 +6,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter8 import learning_study
 from dexrepro.chapters.chapter8.task import beyond, displaced
 from dexrepro.control.contract import build, channels
@@ -24,7 +23,6 @@ from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter
 
-Array = NDArray[np.float64]
 RATE = 50.0
 VIEW = Camera(target=(0.45, -0.3, 0.27), distance=1.2, yaw=25.0, pitch=-15.0)
 
