@@ -182,7 +182,9 @@ class _Worker:
         with contextlib.suppress(OSError):
             if hasattr(os, "killpg") and os.getpgid(self.process.pid) == self.process.pid:
                 os.killpg(self.process.pid, signal.SIGKILL)
-        self.process.kill()
+        if self.process.pid:  # joblib's processes have no kill()
+            with contextlib.suppress(OSError):
+                os.kill(self.process.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
         self.process.join()
         self.connection.close()
 
@@ -245,8 +247,9 @@ def begin_worker(connection: Connection) -> None:
 
 
 def _end_with(parent: Any) -> None:
-    parent.join()
-    os._exit(1)
+    with contextlib.suppress(ValueError):  # joblib gives no word of a parent's end
+        parent.join()
+        os._exit(1)
 
 
 def forget_edited() -> None:
