@@ -154,14 +154,30 @@ def _completions(**context: Any) -> list[str]:
 
 def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
-    from dexrepro.selection import checked_chapter, quoted
+    from dexrepro.selection import for_hydra, quoted
 
     arguments = [quoted(argument) for argument in arguments]
     extra_dir, overrides = _config_dir_option(arguments)
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
         given = [text for text in overrides if not text.startswith("-") and "=" in text]
-        return _launch([*arguments, *checked_chapter(given, extra_dir)], _run_job)
+        if arguments[-2:] in (["--cfg", "job"], ["-c", "job"]) and not {"-m", "--multirun"} & set(arguments):
+            return _print_config(given, extra_dir)
+        return _launch(for_hydra(arguments, given, extra_dir), _run_job)
     return run_overrides(overrides, extra_dir)
+
+
+def _print_config(overrides: Sequence[str], extra_dir: str | None) -> int:
+    """Every parameter of the chapters selected, as the experiments see them."""
+    import yaml
+
+    from dexrepro.config import compose_chapter
+    from dexrepro.selection import chapters_of, of_chapter
+
+    numbers, rest = chapters_of(overrides, extra_dir)
+    for number in numbers:
+        composed = compose_chapter(number, of_chapter(number, numbers, rest), extra_dir)
+        print(yaml.safe_dump({key: value for key, value in composed.items() if key != "hydra"}, sort_keys=False))
+    return OK
 
 
 def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:

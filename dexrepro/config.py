@@ -163,15 +163,17 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         raise InputError(
             f"'{own[0]}' needs --config-dir FOLDER, the folder that holds {own[0][1:].replace('=', '/')}.yaml"
         )
-    _offer(chapter)
-    shipped = _shipped(str(config_dir()), chapter, _changed(chapter))
+    raw = as_written(chapter)
+    shipped = inherited(raw)
     search = [f"hydra.searchpath=[{in_quotes(f'file://{Path(extra_dir).resolve()}')}]"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
     try:
-        check_overrides(overrides, _compose([f"chapter='{chapter}'", *added, *search]) if added else shipped)
+        if added:
+            raw = _compose([f"chapter='{chapter}'", *added, *search])
+        check_overrides(overrides, inherited(raw))
         if not overrides and not extra_dir:
-            return copy.deepcopy(shipped)
-        composed = _compose([f"chapter='{chapter}'", *overrides, *search])
+            return shipped
+        composed = inherited(_compose([f"chapter='{chapter}'", *forced(overrides, raw), *search]))
     except (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, TypeError) as error:
         raise InputError(" ".join(str(error.__cause__ or error).split())) from error
     if unknown := [key for key in composed if key not in shipped]:
@@ -183,6 +185,66 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         )
     check_settings(composed)
     return composed
+
+
+INHERITS = "inherits"
+
+
+def inherited(composed: Mapping[str, Any]) -> dict[str, Any]:
+    """The same with every block that says ``inherits: shared.law`` filled in.
+
+    What the block named has and the inheriting block lacks is referred to leaf by leaf (``gain: ${shared.law.gain}``;
+    ``_target_`` is copied), so that an override of either key works. Several blocks are a list, a later one wins.
+    """
+    return {key: value if key == "hydra" else _inherited(value, composed, ()) for key, value in composed.items()}
+
+
+def _inherited(node: Any, composed: Mapping[str, Any], within: tuple[str, ...]) -> Any:
+    if not isinstance(node, Mapping):
+        return copy.deepcopy(node)
+    result: dict[str, Any] = {}
+    parents = node.get(INHERITS, [])
+    for parent in [parents] if isinstance(parents, str) else parents:
+        base: Any = composed
+        for part in parent.split("."):
+            base = base.get(part) if isinstance(base, Mapping) else None
+        if not isinstance(base, Mapping) or parent in within:
+            raise InputError(
+                f"{INHERITS}: {parent} is not allowed: it must name a block that does not inherit from this one"
+            )
+        result = _laid_over(result, _forwarded(_inherited(base, composed, (*within, parent)), parent))
+    own = {key: _inherited(value, composed, within) for key, value in node.items() if key != INHERITS}
+    return _laid_over(result, own)
+
+
+def _forwarded(node: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+    return {
+        key: _forwarded(value, f"{prefix}.{key}") if isinstance(value, Mapping)
+        else value if key.startswith("_") else f"${{{prefix}.{key}}}"
+        for key, value in node.items()
+        if key != "cases"
+    }  # fmt: skip
+
+
+def _laid_over(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    result = dict(base)
+    for key, value in own.items():
+        both = isinstance(value, Mapping) and isinstance(result.get(key), Mapping)
+        result[key] = _laid_over(result[key], value) if both and "_target_" not in value else value
+    return result
+
+
+def forced(overrides: Sequence[str], raw: Mapping[str, Any]) -> list[str]:
+    """Overrides of inherited keys, which the files do not spell out, as Hydra takes them."""
+    keys = set(_keys(raw))
+    return [f"++{text}" if re.match(r"[A-Za-z_]\w*\.", text) and text.partition("=")[0] not in keys
+            and not text.startswith("hydra") else text for text in overrides]  # fmt: skip
+
+
+def as_written(chapter: str) -> dict[str, Any]:
+    """The shipped configuration of a chapter as its files have it, inheritance not filled in."""
+    _offer(chapter)
+    return _shipped(str(config_dir()), chapter, _changed(chapter))
 
 
 def own_keys(overrides: Sequence[str], folder: str) -> list[str]:

@@ -182,9 +182,7 @@ class _Worker:
         with contextlib.suppress(OSError):
             if hasattr(os, "killpg") and os.getpgid(self.process.pid) == self.process.pid:
                 os.killpg(self.process.pid, signal.SIGKILL)
-        if self.process.pid:  # joblib's processes have no kill()
-            with contextlib.suppress(OSError):
-                os.kill(self.process.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
+        self.process.kill()
         self.process.join()
         self.connection.close()
 
@@ -247,9 +245,8 @@ def begin_worker(connection: Connection) -> None:
 
 
 def _end_with(parent: Any) -> None:
-    with contextlib.suppress(ValueError):  # joblib gives no word of a parent's end
-        parent.join()
-        os._exit(1)
+    parent.join()
+    os._exit(1)
 
 
 def forget_edited() -> None:
@@ -267,7 +264,10 @@ def forget_edited() -> None:
 
 def start_method() -> str:
     """How processes begin: as the program has set it, else by a fork on Linux, where that is quick and safe."""
-    return multiprocessing.get_start_method(allow_none=True) or ("fork" if sys.platform == "linux" else "spawn")
+    chosen = multiprocessing.get_start_method(allow_none=True)
+    if chosen in multiprocessing.get_all_start_methods():  # joblib's workers have one of their own
+        return chosen
+    return "fork" if sys.platform == "linux" else "spawn"
 
 
 def available_cores() -> int:

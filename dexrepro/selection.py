@@ -9,7 +9,17 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dexrepro import chapters
-from dexrepro.config import InputError, check_overrides, compose_chapter, in_quotes, nearest, own_keys, parsed
+from dexrepro.config import (
+    InputError,
+    as_written,
+    check_overrides,
+    compose_chapter,
+    forced,
+    in_quotes,
+    nearest,
+    own_keys,
+    parsed,
+)
 from dexrepro.plan import select
 
 FILES = ("demonstrations", "csv", "file", "path")  # keys whose values are names of files
@@ -107,13 +117,20 @@ def of_chapter(number: str, numbers: Sequence[str], overrides: Sequence[str]) ->
     return result
 
 
-def checked_chapter(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
-    """Refuse what no job of a sweep could use, before Hydra starts any; the chapter where overrides only imply it."""
+def for_hydra(arguments: Sequence[str], overrides: Sequence[str], extra_dir: str | None) -> list[str]:
+    """Arguments of a sweep as Hydra takes them, with the chapter where overrides only imply it.
+
+    Raises InputError for what no job could use, before Hydra starts any.
+    """
     numbers, rest = chapters_of(overrides, extra_dir)
     if extra_dir is None:  # what its files add is known to Hydra alone
         check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
     named = any(re.match(r"chapter=|figure=.*,", text) for text in overrides)
-    return [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and not named else []
+    implied = [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and not named else []
+    return [
+        *forced(arguments, {key: value for number in numbers for key, value in as_written(number).items()}),
+        *implied,
+    ]
 
 
 def quoted(argument: str) -> str:

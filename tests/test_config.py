@@ -15,6 +15,7 @@ from dexrepro.config import (
     commented_leaves,
     compose_chapter,
     experiment_cases,
+    inherited,
     leaves_with_comments,
     parse_provenance,
     resolved_block,
@@ -48,7 +49,10 @@ def test_every_leaf_states_where_it_comes_from(chapter: str) -> None:
     silent = [
         key
         for key, value, comment in commented_leaves(chapter)
-        if not key.rpartition(".")[2].startswith("_") and not value.startswith("${") and not parse_provenance(comment)
+        if not key.rpartition(".")[2].startswith("_")
+        and not key.endswith("inherits")
+        and not value.startswith("${")
+        and not parse_provenance(comment)
     ]
     assert not silent
 
@@ -127,3 +131,31 @@ def test_interpolations_of_every_kind(value: str, expected: object) -> None:
 def test_an_interpolation_that_leads_nowhere_is_refused(value: str, word: str) -> None:
     with pytest.raises(InputError, match=word):
         resolved_block({"e": {"value": value}}, "e")
+
+
+def test_a_block_inherits_what_it_does_not_say_itself() -> None:
+    composed = inherited(
+        {
+            "shared": {"law": {"_target_": "a.Law", "gain": 1.0, "bound": {"low": 0, "high": 2}}, "step": {"dt": 0.1}},
+            "e": {
+                "inherits": "shared.step",
+                "law": {"inherits": "shared.law", "bound": {"high": 3}},
+                "cases": {"a": {}},
+            },
+        }
+    )
+    assert composed["e"]["law"]["gain"] == "${shared.law.gain}"
+    assert resolved_block(composed, "e") == {
+        "dt": 0.1,
+        "law": {"_target_": "a.Law", "gain": 1.0, "bound": {"low": 0, "high": 3}},
+    }
+    with pytest.raises(InputError, match=r"shared\.nothing"):
+        inherited({"e": {"inherits": "shared.nothing"}})
+
+
+def test_an_inherited_key_can_be_overridden_there_and_where_it_comes_from() -> None:
+    key = "barrier_and_switch.law.position_gain"
+    assert resolved_block(compose_chapter("4", [f"{key}=7"]), "barrier_and_switch")["law"]["position_gain"] == 7
+    there = compose_chapter("4", ["shared.two_link.position_gain=8"])
+    assert resolved_block(there, "barrier_and_switch")["law"]["position_gain"] == 8
+    assert resolved_block(there, "skill_reuse")["law"]["position_gain"] == 8

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Protocol, cast
+from typing import Protocol
 
 import numpy as np
 
 from dexrepro.arrays import Array
-from dexrepro.control.contract import Command, HoldingLaw, Law, Measured, NominalModel, check
+from dexrepro.control.contract import Command, HoldingLaw, Law, Measured, NominalModel, Undefined, check, number
 from dexrepro.control.motion import Motion, Path
 from dexrepro.physics.plant import Sense
 
@@ -138,8 +138,11 @@ def limited(
         torque, damping, _ = controller(sense)
         if support is not None:
             torque = torque + support.gravity(sense.position)
+        if not np.all(np.isfinite(torque)):
+            raise Undefined(f"it gave {torque}, and a torque is finite numbers [N m]")
         return Command(np.minimum(np.maximum(torque, -limit), limit), damping)
 
+    setattr(command, "law", getattr(controller, "law", controller))  # noqa: B010  the one to name when it fails
     return command
 
 
@@ -164,7 +167,7 @@ class HoldingDrive:
         since, last = self._before
         rate = (position - last) / (time - since) if time > since else 0.0
         self._before = time, position
-        wanted = cast(float, self.law(Measured(time, position, rate, force)))
+        wanted = number(self.law(Measured(time, position, rate, force)))
         limit = self._limit
         self.reference = wanted if limit == math.inf else self.reference + clip(wanted - self.reference, limit)
         return self.reference

@@ -188,7 +188,7 @@ class Contents:
         block = [resolved_block(self.composed, experiment.name), experiment_cases(self.composed, experiment.name)]
         laws = relations.laws(block)
         own = {sources.place(thing) for thing in functions if thing}
-        texts = [path.read_text() for path in {path for path, _ in own}] + [law.__doc__ or "" for law in laws]
+        texts = [path.read_text("utf-8") for path in {path for path, _ in own}] + [law.__doc__ or "" for law in laws]
         return {
             "functions": [
                 {"name": thing.__name__, **self.code.link(*sources.place(thing))} for thing in functions if thing
@@ -209,7 +209,7 @@ class Contents:
         for suffix in (".svg", ".png"):
             copy(place / "figures" / f"{stem}{suffix}", target / f"{stem}{suffix}")
         _thumbnail(target / f"{stem}.png", target / f"{stem}.webp")
-        head = (target / f"{stem}.svg").read_text()
+        head = (target / f"{stem}.svg").read_text("utf-8")
         return {
             "id": identifier,
             "chapter": self.number,
@@ -225,7 +225,9 @@ class Contents:
     def _table(self, identifier: str, title: str, path: Path, target: Path) -> dict[str, Any]:
         frame = read_table(path)
         copy(path, target / path.name)
-        (target / f"{identifier}.tex").write_text(frame.to_latex(index=False, float_format="%.4g", escape=True))
+        (target / f"{identifier}.tex").write_text(
+            frame.to_latex(index=False, float_format="%.4g", escape=True), encoding="utf-8"
+        )
         base = f"files/{target.name}/{identifier}"
         return {
             "id": identifier,

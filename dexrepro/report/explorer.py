@@ -40,7 +40,7 @@ def write(place: Path, target: Path, cases: Iterable[str], film: Film | None) ->
         if path.exists() and (columns := _columns(path)):
             text, samples, stride = _packed(columns)
             script = target / f"series-{case}.js"
-            script.write_text(f"SERIES[{_quoted(f'{target.name}/{case}')}] = {_quoted(text)};\n")
+            script.write_text(f"SERIES[{_quoted(f'{target.name}/{case}')}] = {_quoted(text)};\n", encoding="utf-8")
             found[case] = {
                 "script": f"files/{target.name}/{script.name}", "csv": f"files/{target.name}/{path.name}",
                 "channels": list(columns), "samples": samples, "stride": stride,
@@ -77,7 +77,7 @@ def scene(place: Path, target: Path, experiment: Experiment) -> dict[str, Any] |
         "solids": [{"kind": item.kind, "size": item.size, "colour": item.colour} for item in seen],
     }  # fmt: skip
     script = target / "scene.js"
-    script.write_text(f"SCENES[{_quoted(target.name)}] = {json.dumps(entry)};\n")
+    script.write_text(f"SCENES[{_quoted(target.name)}] = {json.dumps(entry)};\n", encoding="utf-8")
     return {"case": case, "script": f"files/{target.name}/{script.name}"}
 
 

@@ -78,7 +78,7 @@ class _Report:
 
     def _page(self, name: str, template: str | None = None, **values: Any) -> None:
         text = self.templates.get_template(f"{template or name}.html").render(**values)
-        (self.folder / f"{name}.html").write_text(text)
+        (self.folder / f"{name}.html").write_text(text, encoding="utf-8")
 
     def _write_sources(self, revision: str) -> None:
         (self.folder / "source").mkdir()
@@ -92,10 +92,10 @@ class _Report:
         series = [experiment["series"] for chapter in book for experiment in chapter["experiments"]]
         for item in filter(None, series):
             (self.folder / "files" / item["name"] / "series.js").write_text(
-                _script(f"RECORDED[{json.dumps(item['name'])}]", item)
+                _script(f"RECORDED[{json.dumps(item['name'])}]", item), encoding="utf-8"
             )
         self._index_search(book)
-        (self.folder / "search-index.js").write_text(_script("window.SEARCH_INDEX", self.search))
+        (self.folder / "search-index.js").write_text(_script("window.SEARCH_INDEX", self.search), encoding="utf-8")
 
     # ------------------------------------------------------------------------------------------------------ the search
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import signal
 
 from dexrepro.arrays import Array
-from dexrepro.humans.operator import Tremor, minimum_jerk
+from dexrepro.humans.operator import Tremor, strides
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class HoldPath:
 
 def _smooth(time: Array, start: float, duration: float) -> Array:
     """A minimum-jerk step from 0 to 1."""
-    share = minimum_jerk(1000)
+    share = strides(1000)
     return np.interp((time - start) / duration, np.linspace(0, 1, 1001), np.r_[0.0, share])
 
 

@@ -9,10 +9,7 @@ from typing import Any
 import numpy as np
 
 from dexrepro.arrays import Array, Rng
-from dexrepro.control.computed_torque import ComputedTorque
-from dexrepro.control.contract import Measured
 from dexrepro.control.holding_line import HoldingLineRegulation
-from dexrepro.control.motion import Motion
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
@@ -20,6 +17,7 @@ from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
+from dexrepro.physics.servo import JointServo
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.baxter import baxter, torso
@@ -112,7 +110,7 @@ class GripperServo:
             arm, "pose", servo.ik_gain, 4 * config.step, servo.ik_damping, rest_gain=servo.rest_gain,
             kinematics=self._model,
         )  # fmt: skip
-        self._law = ComputedTorque(model=self._model, frequency=servo.frequency)
+        self._servo = JointServo(self._model, servo.frequency)
         self._sample = 0
         self._torque = [0.0] * arm.dof
 
@@ -128,14 +126,12 @@ class GripperServo:
             inverse.reset(sense.position)
             inverse.rest = sense.position
         if self.due:
-            self._reference = inverse.position
+            before = inverse.position
             inverse(target, self._rotation)
+            # A torque acts for two steps: it is that of the reference in their middle.
+            self._servo.refer(sense.time - self._step, before, inverse.velocity)
         if self._sample % 2 == 0:
-            q, rates = sense.position, inverse.velocity
-            ahead = self._reference + (self._sample % 4 + 1) * self._step * rates
-            measured = Measured(sense.time, q, sense.velocity, np.zeros(len(q)))
-            torque = self._law(measured, Motion(ahead, rates, np.zeros(len(q)))).torque
-            self._torque = (torque - self._model.tip_torque(q, sense.felt)).tolist()
+            self._torque = (self._servo(sense) - self._model.tip_torque(sense.position, sense.felt)).tolist()
         self._sample += 1
         return self._torque
 

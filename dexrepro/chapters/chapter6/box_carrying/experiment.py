@@ -7,8 +7,8 @@ import pandas as pd
 
 from dexrepro.arrays import Array, Image, Rng
 from dexrepro.chapters.chapter6 import arms, bimanual
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World

@@ -8,8 +8,8 @@ import numpy as np
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.measures import rms
 from dexrepro.primitives.coupling import Agents, SurfaceFollower, coupled_rollout, steering
 from dexrepro.primitives.dmp import DMP

@@ -7,8 +7,8 @@ import pandas as pd
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.primitives.barrier import Constraint
 from dexrepro.primitives.constrained import Path, Reference, rollout
 from dexrepro.primitives.dmp import DMP, Trajectory

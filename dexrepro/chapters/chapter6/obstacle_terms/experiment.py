@@ -11,8 +11,8 @@ from scipy.signal import savgol_filter
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning, plane
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
-from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.primitives.constrained import LAWS, Reference, Skill, rollout
 from dexrepro.primitives.coupling import Term, coupled_rollout, dynamic_potential, steering
 from dexrepro.primitives.obstacles import Polygon, clearance
