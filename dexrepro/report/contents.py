@@ -15,7 +15,7 @@ from dexrepro import chapters
 from dexrepro.claims import Claim, Erratum
 from dexrepro.config import compose_chapter, experiment_cases, provenance, resolved_block
 from dexrepro.experiment import Experiment
-from dexrepro.plan import outdated, plan_chapter
+from dexrepro.plan import lacking, outdated, plan_chapter
 from dexrepro.report import equations, explorer, parameters, relations, sources, studies, verdicts, words
 from dexrepro.report.damage import check_result, is_safe, read_table
 from dexrepro.report.style import file_stem
@@ -44,6 +44,9 @@ class Contents:
         self.metrics: dict[str, Any] = {}
         self.experiments: list[dict[str, Any]] = []
         made = [e for e in self.chapter.experiments if (self.place / e.name / "run.json").exists()]
+        self.absent = [
+            {"name": e.name, "number": number, "why": lacking(e)} for e in self.chapter.experiments if e not in made
+        ]
         for experiment in made:
             check_result(self.place / experiment.name, "metrics.json", "claims.json", "config.yaml")
             self.metrics |= read_json(self.place / experiment.name / "metrics.json")
@@ -66,6 +69,7 @@ class Contents:
             "title": self.chapter.title,
             "fairness": getattr(self.chapter, "fairness", ""),
             "experiments": self.experiments,
+            "absent": self.absent,
             "claims": claims,
             "score": verdicts.score(claims),
             "symbols": parameters.index(self.composed, self.origins, rows),
