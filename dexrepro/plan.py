@@ -22,13 +22,16 @@ from dexrepro.case import targets
 from dexrepro.config import (
     SETTINGS,
     InputError,
+    check_lengths,
     check_types,
+    check_words,
     compose_chapter,
     differences,
     experiment_cases,
     leaves,
     nearest,
     resolved_block,
+    words_of,
 )
 from dexrepro.experiment import Experiment
 from dexrepro.storage import digest_of
@@ -101,7 +104,9 @@ def plan_chapter(
     shipped = compose_chapter(chapter)
     if config["gui"]:
         _require_display()
-    results = writable(Path(config["results"])) if write else Path(config["results"])
+    results = Path(config["results"]).expanduser()
+    if write:
+        writable(results)
     plans, skipped = [], {}
     for experiment in select(chapter, config["only"], config["figure"]):
         if needed := lacking(experiment):
@@ -142,6 +147,8 @@ def _plan(
         if key not in shipped[name]:
             raise InputError(f"unknown key '{name}.{key}': {nearest(key, shipped[name])}")
     differs = [] if _as_shipped(config, shipped) else _differs(name, config, shipped, cases, block)
+    for values in cases.values() if differs else ():
+        check_words(values, words_of(chapter, name), name)
     folder = results / f"chapter{chapter}" / name
     if differs:
         label = block["name"] if chapter == chapters.OWN else name
@@ -169,6 +176,7 @@ def _differs(
     book = experiment_cases(shipped, name)
     for case, values in cases.items():
         check_types(values, book.get(case, next(iter(book.values()))), name)
+        check_lengths(values, book.get(case, next(iter(book.values()))), name)
     differs = differences(block, resolved_block(shipped, name))
     differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
     differs = differs or differences(cases, book)  # a shared value that only a case refers to
