@@ -186,10 +186,10 @@ def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
         if argument in ("--config-dir", "-cd"):
             if index + 1 == len(arguments):
                 raise InputError("--config-dir needs a folder")
-            extra_dir = arguments[index + 1]
+            extra_dir = os.path.expanduser(arguments[index + 1])
             del rest[index : index + 2]
         elif argument.startswith("--config-dir="):
-            extra_dir = argument.partition("=")[2]
+            extra_dir = os.path.expanduser(argument.partition("=")[2])
             rest.remove(argument)
     if extra_dir is not None:
         _make_importable(extra_dir)

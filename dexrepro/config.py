@@ -28,6 +28,7 @@ from hydra import compose, initialize_config_dir
 from hydra.core.config_store import ConfigStore
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
@@ -208,7 +209,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         )
     raw = as_written(chapter)
     shipped = inherited(raw)
-    search = [f"hydra.searchpath=['file://{Path(extra_dir).resolve()}']"] if extra_dir else []
+    search = [f"hydra.searchpath=[{in_quotes(f'file://{Path(extra_dir).resolve()}')}]"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
     try:
         if added:
@@ -294,9 +295,10 @@ def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
     """Keys set by the files of a folder that overrides such as ``+own=compare`` choose."""
     keys: list[str] = []
     for text in overrides:
-        group, _, options = text.lstrip("+").partition("=")
-        for option in options.strip("[]").split(","):
-            path = Path(folder, group, option.strip("'\" ")).with_suffix(".yaml")
+        override = parsed(text)
+        chosen = override.value() if override else None
+        for option in chosen if isinstance(chosen, list) else [chosen]:
+            path = Path(folder, override.key_or_group if override else "", f"{str(option).removesuffix('.yaml')}.yaml")
             if path.is_file():
                 keys += read_config(path)
     return keys
@@ -343,16 +345,28 @@ def _compose(overrides: list[str]) -> dict[str, Any]:
     return OmegaConf.to_container(config, resolve=False)  # type: ignore[return-value]
 
 
+def parsed(text: str) -> Override | None:
+    """What Hydra's grammar makes of a word, None where it is none of its overrides."""
+    try:
+        return OverridesParser.create().parse_override(text)
+    except HydraException:
+        return None
+
+
+def in_quotes(text: str) -> str:
+    """A text that Hydra's grammar takes as it is."""
+    return "'" + text.replace("'", "\\'") + ("\\'" if text.endswith("\\") else "'")
+
+
 def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> None:
     """Refuse overrides that do not parse or whose key the shipped configuration does not have."""
     keys = list(_keys(shipped))
     for text in overrides:
-        try:
-            override = OverridesParser.create().parse_override(text)
-        except HydraException as error:
+        override = parsed(text)
+        if override is None:
             raise InputError(
                 f"'{text}' is not an override of the form key=value, such as chapter=2, only=EXPERIMENT or figure=2.7"
-            ) from error
+            )
         key = override.key_or_group
         if override.is_add() or override.is_force_add() or "/" in key or key.startswith("hydra"):
             continue

@@ -104,7 +104,9 @@ def plan_chapter(
     shipped = compose_chapter(chapter)
     if config["gui"]:
         _require_display()
-    results = writable(Path(config["results"])) if write else Path(config["results"])
+    results = Path(config["results"]).expanduser()
+    if write:
+        writable(results)
     plans, skipped = [], {}
     for experiment in select(chapter, config["only"], config["figure"]):
         if needed := lacking(experiment):
