@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import multiprocessing
 import os
 import shutil
 import signal
@@ -16,6 +17,8 @@ import pytest
 import dexrepro
 from dexrepro import chapters, cli
 
+if method := os.environ.get("DEXREPRO_TEST_START"):  # spawn: as processes begin on macOS and Windows
+    multiprocessing.set_start_method(method, force=True)
 ROOT = Path(dexrepro.__file__).parent.parent
 TOY = Path(__file__).parent / "toy"
 
@@ -46,7 +49,7 @@ def toy(tmp_path: Path, toy_book: Path) -> Iterator[Path]:
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A report of chapter 90, with a film, built once for the tests of a module."""
+    """A report of chapter 90, with a film and a run with other parameters, built once for the tests of a module."""
     from PIL import Image
 
     from dexrepro.plan import plan_chapter
@@ -54,8 +57,8 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     from dexrepro.runner import run_plans
 
     with toy_chapter(tmp_path_factory.mktemp("work"), tmp_path_factory.mktemp("toy") / "book") as folder:
-        plans, _ = plan_chapter("90")
-        run_plans(plans, workers=1, force=False)
+        for overrides in ((), ("decay.start=0.5",)):
+            run_plans(plan_chapter("90", overrides)[0], workers=1, force=False)
         films = folder / "results/chapter90/decay/animation"
         films.mkdir()
         for name in ("plain.gif", "plain.png"):
