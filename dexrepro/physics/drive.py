@@ -126,24 +126,27 @@ class Posture:
         return Command(jacobian.T @ (command.force + force) + mass @ wanted, command.damping)
 
 
-def limited(
-    controller: Callable[[Sense], Command], limit: Array | float = math.inf, support: NominalModel | None = None
-) -> Callable[[Sense], Command]:
+class Limited:
     """A controller whose torques stay within +- limit [N m].
 
     support: a model whose gravity torque is added, what holds the arm alone, as an arm's maker does.
     """
 
-    def command(sense: Sense) -> Command:
-        torque, damping, _ = controller(sense)
-        if support is not None:
-            torque = torque + support.gravity(sense.position)
+    def __init__(
+        self,
+        controller: Callable[[Sense], Command],
+        limit: Array | float = math.inf,
+        support: NominalModel | None = None,
+    ) -> None:
+        self.law, self.limit, self.support = controller, limit, support
+
+    def __call__(self, sense: Sense) -> Command:
+        torque, damping, _ = self.law(sense)
+        if self.support is not None:
+            torque = torque + self.support.gravity(sense.position)
         if not np.all(np.isfinite(torque)):
             raise Undefined(f"it gave {torque}, and a torque is finite numbers [N m]")
-        return Command(np.minimum(np.maximum(torque, -limit), limit), damping)
-
-    setattr(command, "law", getattr(controller, "law", controller))  # noqa: B010  the one to name when it fails
-    return command
+        return Command(np.minimum(np.maximum(torque, -self.limit), self.limit), damping)
 
 
 class HoldingDrive:

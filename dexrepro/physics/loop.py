@@ -266,8 +266,9 @@ class _Scene:
 
 def _name_of(controller: Controller) -> str:
     """The class of the law that a controller carries out."""
-    law = getattr(controller, "law", None) or getattr(controller, "_law", controller)
-    law = getattr(law, "law", law)
+    law: object = controller
+    while not hasattr(law, "kind") and hasattr(law, "law"):
+        law = law.law
     return str(getattr(law, "__qualname__", type(law).__name__))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -27,31 +28,26 @@ OPEN_ROWS = 8  # a longer table is folded
 
 
 class Contents:
-    """One chapter. folder: of the report; pages point at lines of the code through ``code``."""
+    """One chapter, of the results in ``places`` by experiment; pages point at lines of the code through ``code``."""
 
     def __init__(
-        self, number: str, results: Path, folder: Path, code: sources.Sources, found: Mapping[str, Any]
+        self, number: str, places: Mapping[str, Path], folder: Path, code: sources.Sources, studies: Mapping[str, Any]
     ) -> None:
-        self.number, self.place, self.folder, self.code, self.studies = (
-            number,
-            results / f"chapter{number}",
-            folder,
-            code,
-            found,
-        )
+        self.number, self.places, self.folder, self.code, self.studies = number, places, folder, code, studies
         self.chapter = chapters.load(number)
         self.composed, self.origins = compose_chapter(number), provenance(number)
         self.metrics: dict[str, Any] = {}
         self.experiments: list[dict[str, Any]] = []
-        made = [e for e in self.chapter.experiments if (self.place / e.name / "run.json").exists()]
+        made = [experiment for experiment in self.chapter.experiments if experiment.name in places]
         self.absent = [
             {"name": e.name, "number": number, "why": lacking(e)} for e in self.chapter.experiments if e not in made
         ]
         for experiment in made:
-            check_result(self.place / experiment.name, "metrics.json", "claims.json", "config.yaml")
-            self.metrics |= read_json(self.place / experiment.name / "metrics.json")
-        plans = plan_chapter(number, write=False)[0] if made else []
-        self.plans = {plan.experiment: plan for plan in plans}
+            check_result(places[experiment.name], "metrics.json", "claims.json", "config.yaml")
+            self.metrics |= read_json(places[experiment.name] / "metrics.json")
+        as_shipped = [experiment.name for experiment in made if places[experiment.name].name == experiment.name]
+        plans = plan_chapter(number, write=False)[0] if as_shipped else []
+        self.plans = {plan.experiment: plan for plan in plans if plan.experiment in as_shipped}
         self.definitions = relations.definitions(self.chapter.folder) if made else {}
         self.errata = {item.id: self._erratum(item) for item in self.chapter.errata} if made else {}
         self.experiments = [self._experiment(experiment) for experiment in made]
@@ -86,13 +82,14 @@ class Contents:
     # ------------------------------------------------------------------------------------------------- one experiment
 
     def _experiment(self, experiment: Experiment) -> dict[str, Any]:
-        place, target = self.place / experiment.name, self.folder / "files" / experiment.name
+        place = self.places[experiment.name]
+        target = self.folder / "files" / place.name
         target.mkdir(parents=True)
         run, study = read_json(place / "run.json"), self._study(experiment.name, target)
         files = []
         for path in sorted([*place.glob("*.json"), place / "config.yaml", *place.glob("series/*")]):
             copy(path, target / path.name)
-            files.append({"name": path.name, "path": f"files/{experiment.name}/{path.name}"})
+            files.append({"name": path.name, "path": f"files/{target.name}/{path.name}"})
         written = {claim.id: claim for claim in self.chapter.claims}
         claims = [
             self._claim(entry, written.get(entry["id"]), study["claims"].get(entry["id"]) if study else None)
@@ -206,6 +203,14 @@ class Contents:
         if not found or not found["claims"]:
             return None
         path = studies.save(found, target / "study.svg")
+        if found["draws"]:
+            said = {claim.id: claim.statement for claim in self.chapter.claims}
+            data = {
+                "chapter": self.number, "experiment": experiment, "draws": found["draws"], "varied": found["varied"],
+                "claims": [{"id": key, "statement": said.get(key, ""), "parameter": row["parameter"]}
+                           for key, row in found["claims"].items()],
+            }  # fmt: skip
+            (target / "study.js").write_text(words.script(f"STUDIES[{json.dumps(target.name)}]", data), "utf-8")
         return {**found, "svg": f"files/{target.name}/{path.name}", "finding": studies.finding(found)}
 
     def _figure(self, identifier: str, caption: str, alt: str, place: Path, target: Path) -> dict[str, Any]:

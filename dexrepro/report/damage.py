@@ -57,11 +57,11 @@ def check_result(folder: Path, *names: str, series: bool = False) -> Experiment:
             if not any((folder / "series").glob(f"{case}.*")):
                 raise _damaged(folder, f"no series of the case '{case}'")
         for path in sorted((folder / "series").glob("*.gz")):
-            _check_series(path)
+            check_series(path)
     return known[name]
 
 
-def _check_series(path: Path) -> None:
+def check_series(path: Path) -> None:
     try:
         with gzip.open(path) as file:
             read = 0

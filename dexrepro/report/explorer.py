@@ -9,18 +9,19 @@ from __future__ import annotations
 import base64
 import json
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from dexrepro.config import InputError
 from dexrepro.experiment import Experiment, Film
 from dexrepro.physics.rendering import Camera
+from dexrepro.recordings import read_frame
 from dexrepro.report.animation import recorded_scene
+from dexrepro.report.damage import check_series
 
 LONGEST = 4000  # samples of a case; of a longer one every k-th is shown
 SHORTEST = 10
@@ -39,10 +40,10 @@ def write(place: Path, target: Path, cases: Iterable[str], film: Film | None) ->
         path = place / "series" / f"{case}.csv.gz"
         if path.exists() and (columns := _columns(path)):
             text, samples, stride = _packed(columns)
-            script = target / f"series-{case}.js"
-            script.write_text(f"SERIES[{_quoted(f'{target.name}/{case}')}] = {_quoted(text)};\n", encoding="utf-8")
+            script, key = target / f"series-{case}.js", f"{target.name}/{case}"
+            script.write_text(f"SERIES[{_quoted(key)}] = {_quoted(text)};\n", encoding="utf-8")
             found[case] = {
-                "script": f"files/{target.name}/{script.name}", "csv": f"files/{target.name}/{path.name}",
+                "key": key, "script": f"files/{target.name}/{script.name}", "csv": f"files/{target.name}/{path.name}",
                 "channels": list(columns), "samples": samples, "stride": stride,
             }  # fmt: skip
     if not found:
@@ -50,6 +51,14 @@ def write(place: Path, target: Path, cases: Iterable[str], film: Film | None) ->
     names = list(dict.fromkeys(_name(column) for case in found.values() for column in case["channels"]))[1:]
     channels = [{"name": name, "unit": unit(name, film)} for name in names]
     return {"name": target.name, "cases": found, "channels": channels, "first": _first(names, list(found), film)}
+
+
+def beside(series: dict[str, Any], book: Mapping[str, Any]) -> None:
+    """Add the cases of the book's run to those of another one, and show those of the same name together."""
+    ours = list(series["cases"])
+    series["cases"] |= {f"book: {case}": entry for case, entry in book["cases"].items()}
+    shown = [case for case in ours if case in book["cases"]][:2] or ours[:2]
+    series["first"]["cases"] = [name for case in shown for name in (case, f"book: {case}") if name in series["cases"]]
 
 
 def scene(place: Path, target: Path, experiment: Experiment) -> dict[str, Any] | None:
@@ -104,7 +113,8 @@ def _first(names: list[str], cases: list[str], film: Film | None) -> dict[str, l
 
 def _columns(path: Path) -> dict[str, Any]:
     """Numeric columns by name, time first; {} for what is no series in time."""
-    frame = pd.read_csv(path).select_dtypes("number")
+    check_series(path)
+    frame = read_frame(path).select_dtypes("number")
     if len(frame) < SHORTEST or frame.columns[0] != "time" or not frame["time"].is_monotonic_increasing:
         return {}
     return {str(name): frame[name].to_numpy(np.float32) for name in frame}

@@ -164,7 +164,7 @@ class Follower:
     """
 
     def __init__(self, config: Config, arm: Arm) -> None:
-        self._servo, self._law = GripperServo(config, arm, FACING["left"]), HoldingDrive(config.law)
+        self._servo, self.law = GripperServo(config, arm, FACING["left"]), HoldingDrive(config.law)
         self._approach, self._threshold = config.approach_speed * config.step, config.contact_force
         self._regulations = [HoldingLineRegulation(gain=config.regulation) for _ in "xz"]
         self.reference = self._home = start(config, "follower")
@@ -181,9 +181,9 @@ class Follower:
             if math.sqrt(fx * fx + fy * fy + fz * fz) > self._threshold:
                 self.contact_time = sense.time
                 self._home[1] = sense.tip[1]
-                self._law.reset(sense.time, 0.0)
+                self.law.reset(sense.time, 0.0)
         else:
-            along = self._law(sense.time, sense.tip[1] - self._home[1], fy)
+            along = self.law(sense.time, sense.tip[1] - self._home[1], fy)
             (x, z), home = (law(force) for law, force in zip(self._regulations, (fx, fz))), self._home
             self.reference = np.array((home[0] + x, home[1] + along, home[2] + z))
         return self._servo(sense, self.reference)

@@ -98,7 +98,7 @@ class Reach:
     def __init__(self, config: Config, centre: Callable[[float], Array], applied: Callable[[], Any]) -> None:
         self.arm = gripper_arm(config.gripper)
         self.model = RigidBodyModel(self.arm, mass_error=config.model.mass_error)
-        self.config, self.drive, self.observer = config, JointDrive(config.law), config.observer
+        self.config, self.law, self.observer = config, JointDrive(config.law), config.observer
         if config.adaptation == "task":  # what of e2 moves the task drives the weights
             config.law.part = self._moving
         self._centre, self._applied = centre, applied
@@ -125,7 +125,7 @@ class Reach:
             back = self._inverse if config.task == "position" else damped_inverse(jacobian, config.damping)
             joints, joint_rate = q - back @ error, back @ rate
         desired = Motion(joints, joint_rate, np.zeros(len(q)))
-        torque, damping, _ = self.drive.command(Measured(sense.time, q, dq, self.observed), desired)
+        torque, damping, _ = self.law.command(Measured(sense.time, q, dq, self.observed), desired)
         torque = torque + config.model.gravity_compensation * gravity
         if config.null_space.enabled:
             torque += projector @ self._subtask(state, centre)

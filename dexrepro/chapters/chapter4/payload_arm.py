@@ -13,7 +13,7 @@ from dexrepro.control.contract import Command, Law, build, report
 from dexrepro.control.motion import Sampled, via_points
 from dexrepro.experiment import Config, Recording
 from dexrepro.networks import AdaptiveNetwork
-from dexrepro.physics.drive import EndPointDrive, limited
+from dexrepro.physics.drive import EndPointDrive, Limited
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
@@ -65,7 +65,7 @@ class Pilot:
 
     def __init__(self, law: Law, model: RigidBodyModel, compensate: bool, reference: Sampled) -> None:
         self.law, self.drive = law, EndPointDrive(law, reference, model)
-        self.command = limited(self.drive, support=model if compensate else None)
+        self.command = Limited(self.drive, support=model if compensate else None)
 
     def __call__(self, sense: Sense) -> Command:
         return self.command(sense)

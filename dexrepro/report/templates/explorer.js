@@ -34,9 +34,7 @@ async function explore(place, recorded) {
     if (!data.has(name)) {
       const entry = recorded.cases[name];
       await load(entry.script);
-      const key = `${recorded.name}/${name}`;
-      const columns = await unpacked(SERIES[key], entry.channels.length, entry.samples);
-      delete SERIES[key];
+      const columns = await unpacked(SERIES[entry.key], entry.channels.length, entry.samples);
       data.set(name, Object.fromEntries(entry.channels.map((channel, i) => [channel, columns[i]])));
     }
     return data.get(name);

@@ -16,7 +16,7 @@ from dexrepro.control.interaction_optimum import InteractionCost, InteractionMod
 from dexrepro.control.motion import Motion, Path
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.networks import GrowingGaussians
-from dexrepro.physics.drive import EndPointDrive, Posture, limited
+from dexrepro.physics.drive import EndPointDrive, Limited, Posture
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.rendering import Camera
@@ -67,7 +67,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     with scene(config) as world:
         recording = world.run(
             config.duration,
-            controllers={"arm": limited(drive, limits, model if config.gravity_compensation else None)},
+            controllers={"arm": Limited(drive, limits, model if config.gravity_compensation else None)},
             control_period=config.control_period,
             probes={
                 "reference": lambda: drive.desired.position,
