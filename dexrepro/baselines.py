@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters
-from dexrepro.config import InputError
+from dexrepro.config import InputError, in_quotes
 from dexrepro.plan import outdated, plan_chapter, select
 from dexrepro.report.damage import check_result, read_table
 from dexrepro.runner import run_plans
@@ -48,12 +48,14 @@ def baseline_file(chapter: str, experiment: str) -> Path:
 class Baseline:
     """What is stored of one experiment: metrics as ``{name: {value, rtol, atol}}``, verdicts by claim, tables by id.
 
-    tables: None where none have been stored yet; then none are compared.
+    tables: None where none have been stored yet; then none are compared. free: columns ("T4.D/step [µs]") that may
+    differ, by the reason why; they are set by hand and survive updates.
     """
 
     metrics: dict[str, dict[str, Any]] = field(default_factory=dict)
     claims: dict[str, str] = field(default_factory=dict)
     tables: dict[str, dict[str, list[Any]]] | None = None
+    free: dict[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(cls, chapter: str, experiment: str) -> Baseline:
@@ -171,6 +173,29 @@ def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> Chap
     return report
 
 
+def check_cases(chapter: str, results: Path, only: Sequence[str], case: str) -> ChapterReport:
+    """The same for the metrics of the cases that a word ``case=...`` chooses, from a run of them or else of all."""
+    words = [f"results={in_quotes(str(results))}", case, *([f"only=[{','.join(only)}]"] if only else [])]
+    plans, _ = plan_chapter(chapter, words, write=False)
+    report = ChapterReport(chapter)
+    for plan in plans:
+        places = plan.folder, results / f"chapter{chapter}" / plan.experiment
+        folder = next((place for place in places if (place / "run.json").exists()), None)
+        if folder is None:
+            raise ResultsMissing(
+                f"no results of {plan.experiment}; run: dexrepro run chapter={chapter} only={plan.experiment} {case}"
+            )
+        check_result(folder, "metrics.json")
+        run = read_json(folder / "run.json")
+        if reason := outdated(plan, run | {"contents": {c: run["contents"].get(c) for c in plan.contents}}):
+            report.outdated.append(f"{plan.experiment}: {reason}")
+        begins = tuple(f"{plan.experiment}.{job.case}." for job in plan.jobs)
+        made, stored = read_json(folder / "metrics.json"), Baseline.of(chapter, plan.experiment).metrics
+        chosen = ({name: item for name, item in all_.items() if name.startswith(begins)} for all_ in (made, stored))
+        _compare(report, plan.experiment, *chosen)
+    return report
+
+
 def _compare(
     report: ChapterReport, experiment: str, metrics: Mapping[str, Any], stored: Mapping[str, Mapping[str, Any]]
 ) -> None:
@@ -210,7 +235,7 @@ def _compare_tables(report: ChapterReport, folder: Path, stored: Baseline) -> No
         if list(old) != list(new) or len(next(iter(old.values()), [])) != len(next(iter(new.values()), [])):
             report.tables_changed.append(f"{name} has other rows or columns")
             continue
-        for column in old:
+        for column in (column for column in old if f"{name}/{column}" not in stored.free):
             size = max((abs(cell) for cell in old[column] if isinstance(cell, int | float)), default=0.0)
             for row, (before, after) in enumerate(zip(old[column], new[column], strict=True), 1):
                 if not _same_cell(after, before, size, stored.metrics):
@@ -277,7 +302,8 @@ def update_chapter(
             for name, value in metrics.items()
         }
         verdicts = {claim["id"]: claim["verdict"] for claim in read_json(plan.folder / "claims.json")}
-        new[plan.experiment] = Baseline(entries, verdicts, tables_of(plan.folder / "tables"))
+        free = old[plan.experiment].free
+        new[plan.experiment] = Baseline(entries, verdicts, tables_of(plan.folder / "tables"), free)
     changed = {
         key: (before, new[name].claims[key])
         for name, stored_baseline in old.items()
