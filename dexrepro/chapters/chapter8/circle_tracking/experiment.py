@@ -69,9 +69,7 @@ def match_rates(config: Config) -> float:
     own = config.networks[2].basis
     broad = GrowingGaussians(2, width=config.match.width, threshold=config.match.threshold)
     motion = circle(config.path)
-    path = [np.array(config.start)] + [
-        motion(time).position for time in np.arange(0.0, config.early, 0.05)
-    ]
+    path = [np.array(config.start)] + [motion(time).position for time in np.arange(0.0, config.early, 0.05)]
     steady = round(config.settled / 0.05)
     wanted, has = (np.mean([np.sum(basis(x, grow=True) ** 2) for x in path][steady:]) for basis in (broad, own))
     factor = float(wanted / has)
@@ -122,7 +120,7 @@ def _gain(recording: Recording, power: Array) -> float | None:
 
 
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
-    """Error of the fixed network over that of the grown one, on each axis, where both cases were run."""
+    """Error of the fixed network over that of the grown one from 5 to 10 s, by axis, where both cases were run."""
     pairs = {
         "unit": ("broad_unit", "fuzzy_unit"),
         "tuned": ("broad", "fuzzy"),
@@ -131,7 +129,7 @@ def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     result: Metrics = {}
     for name, (broad, fuzzy) in pairs.items():
         if broad in metrics and fuzzy in metrics:
-            for key in ("rms_x", "rms_y"):
+            for key in ("early_x", "early_y"):
                 mine, other = metrics[broad][key], metrics[fuzzy][key]
                 result[f"ratio_{name}_{key[-1]}"] = other / mine if mine and other else None
     return result
