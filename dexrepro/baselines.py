@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters
-from dexrepro.config import InputError
+from dexrepro.config import InputError, in_quotes
 from dexrepro.plan import outdated, plan_chapter, select
 from dexrepro.report.damage import check_result, read_table
 from dexrepro.runner import run_plans
@@ -168,6 +168,29 @@ def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> Chap
         _compare(report, experiment.name, read_json(folder / "metrics.json"), stored.metrics)
         _compare_claims(report, experiment.name, read_json(folder / "claims.json"), stored.claims)
         _compare_tables(report, folder / "tables", stored)
+    return report
+
+
+def check_cases(chapter: str, results: Path, only: Sequence[str], case: str) -> ChapterReport:
+    """The same for the metrics of the cases that a word ``case=...`` chooses, from a run of them or else of all."""
+    words = [f"results={in_quotes(str(results))}", case, *([f"only=[{','.join(only)}]"] if only else [])]
+    plans, _ = plan_chapter(chapter, words, write=False)
+    report = ChapterReport(chapter)
+    for plan in plans:
+        places = plan.folder, results / f"chapter{chapter}" / plan.experiment
+        folder = next((place for place in places if (place / "run.json").exists()), None)
+        if folder is None:
+            raise ResultsMissing(
+                f"no results of {plan.experiment}; run: dexrepro run chapter={chapter} only={plan.experiment} {case}"
+            )
+        check_result(folder, "metrics.json")
+        run = read_json(folder / "run.json")
+        if reason := outdated(plan, run | {"contents": {c: run["contents"].get(c) for c in plan.contents}}):
+            report.outdated.append(f"{plan.experiment}: {reason}")
+        begins = tuple(f"{plan.experiment}.{job.case}." for job in plan.jobs)
+        made, stored = read_json(folder / "metrics.json"), Baseline.of(chapter, plan.experiment).metrics
+        chosen = ({name: item for name, item in all_.items() if name.startswith(begins)} for all_ in (made, stored))
+        _compare(report, plan.experiment, *chosen)
     return report
 
 

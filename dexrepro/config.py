@@ -35,7 +35,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from dexrepro import chapters
 
-SETTINGS = ("only", "figure", "seed", "results", "workers", "case_timeout", "force", "quiet", "gui")
+SETTINGS = ("only", "case", "figure", "seed", "results", "workers", "case_timeout", "force", "quiet", "gui")
 
 
 class InputError(Exception):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import fnmatch
 import glob
 import hashlib
 import importlib.util
@@ -11,7 +12,7 @@ import sys
 import tempfile
 import uuid
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
@@ -37,6 +38,7 @@ from dexrepro.experiment import Experiment
 from dexrepro.storage import digest_of
 
 NUMERICAL = ("numpy", "scipy", "pybullet")  # packages whose version can change a number
+PARTIAL = "case="  # begins the word by which a result of some cases differs from the whole one
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,27 @@ def plan_chapter(
             skipped[experiment.name] = needed
             continue
         plans.append(_plan(chapter, experiment.name, config, shipped, results, perturbation))
-    return plans, skipped
+    return _of_cases(plans, config["case"]), skipped
+
+
+def _of_cases(plans: list[Plan], wanted: str | Sequence[str] | None) -> list[Plan]:
+    """The plans for some of their cases, by name or pattern: a result of its own, which stands for no whole one."""
+    if wanted is None:
+        return plans
+    patterns = [wanted] if isinstance(wanted, str) else list(map(str, wanted))
+    names = [job.case for plan in plans for job in plan.jobs]
+    for pattern in patterns:
+        if not fnmatch.filter(names, pattern):
+            raise InputError(f"unknown case '{pattern}': {nearest(pattern, dict.fromkeys(names))}")
+    result = []
+    for plan in plans:
+        jobs = [job for job in plan.jobs if any(fnmatch.fnmatchcase(job.case, pattern) for pattern in patterns)]
+        if 0 < len(jobs) < len(plan.jobs):
+            label, chosen = plan.folder.name.rpartition("-")[0] or plan.folder.name, [job.case for job in jobs]
+            folder = plan.folder.parents[1] / "runs" / f"{label}-{digest_of([plan.folder.name, chosen])[:10]}"
+            plan = replace(plan, jobs=jobs, folder=folder, differs=[*plan.differs, f"{PARTIAL}{','.join(chosen)}"])
+        result += [plan] if jobs else []
+    return result
 
 
 def lacking(experiment: Experiment) -> str:

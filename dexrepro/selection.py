@@ -140,6 +140,8 @@ def quoted(argument: str) -> str:
         values = match[2].split(",")
         return argument if match[2] == "null" else f"{match[1]}=" + ",".join(f"'{value}'" for value in values)
     key, mark, value = argument.partition("=")
+    if key in ("case", "cases") and mark:
+        key, argument = "case", f"case=[{value}]" if "," in value and value[0] not in "['\"" else f"case={value}"
     if not mark or not value or key.startswith("-"):
         return argument
     understood = parsed(argument)

@@ -7,8 +7,10 @@ from typing import Any
 
 import pytest
 
+from dexrepro.cli import main
 from dexrepro.config import parsed
 from dexrepro.selection import chapters_of, of_chapter, quoted
+from dexrepro.storage import read_json
 
 
 def test_experiments_of_several_chapters_go_each_to_its_own() -> None:
@@ -71,3 +73,21 @@ def test_a_name_with_a_comma_is_a_name_where_there_is_such_a_file(
 )  # fmt: skip
 def test_hydras_own_grammar_is_left_alone(word: str) -> None:
     assert quoted(word) == word
+
+
+def test_some_cases_run_alone_as_a_result_of_their_own(toy: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "chapter=90", "only=decay", "cases=gain*", "case_timeout=null", "workers=1"]) == 0
+    text = capsys.readouterr().out
+    assert "decay.gain1" in text
+    assert "decay.plain" not in text
+    (result,) = Path("results/runs").glob("decay-*/run.json")
+    assert sorted(read_json(result)["cases"]) == ["gain1", "gain2"]
+    assert not Path("results/chapter90/decay").exists(), "some cases do not stand for the whole result"
+    assert main(["check", "chapter=90", "only=decay", "cases=gain*"]) == 1, "all is new without a baseline"
+    assert "0 missing" in capsys.readouterr().out
+    assert main(["draw", "chapter=90", "only=decay", "cases=gain*"]) == 0
+    assert main(["run", "chapter=90", "only=decay", "case=fast,plain", "workers=1"]) == 0
+    assert main(["run", "chapter=90", "only=decay", "case=gain7"]) == 2
+    assert "unknown case 'gain7': did you mean 'gain" in capsys.readouterr().err
+    assert main(["run", "chapter=90", "only=decay", "case=*", "workers=1"]) == 0
+    assert Path("results/chapter90/decay/run.json").exists(), "all cases are the whole result"

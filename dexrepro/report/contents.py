@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -202,6 +203,14 @@ class Contents:
         if not found or not found["claims"]:
             return None
         path = studies.save(found, target / "study.svg")
+        if found["draws"]:
+            said = {claim.id: claim.statement for claim in self.chapter.claims}
+            data = {
+                "chapter": self.number, "experiment": experiment, "draws": found["draws"], "varied": found["varied"],
+                "claims": [{"id": key, "statement": said.get(key, ""), "parameter": row["parameter"]}
+                           for key, row in found["claims"].items()],
+            }  # fmt: skip
+            (target / "study.js").write_text(words.script(f"STUDIES[{json.dumps(target.name)}]", data), "utf-8")
         return {**found, "svg": f"files/{target.name}/{path.name}", "finding": studies.finding(found)}
 
     def _figure(self, identifier: str, caption: str, alt: str, place: Path, target: Path) -> dict[str, Any]:

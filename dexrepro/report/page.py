@@ -12,7 +12,7 @@ from typing import Any
 import jinja2
 
 from dexrepro import __version__, chapters, study
-from dexrepro.report import equations, explorer, symbols, verdicts, words
+from dexrepro.report import equations, explorer, studies, symbols, verdicts, words
 from dexrepro.report.contents import Contents, in_book_order
 from dexrepro.report.damage import check_result
 from dexrepro.report.sources import Sources
@@ -56,9 +56,10 @@ class _Report:
         self.code = Sources(folder)
 
     def write(self) -> None:
-        studies, runs = {item["experiment"]: item for item in study.stored(self.results)}, self._own_runs()
+        stored, runs = study.stored(self.results), self._own_runs()
+        known = {item["experiment"]: {**item, "draws": studies.samples(item, self.results)} for item in stored}
         places = {number: _results(self.results / f"chapter{number}") for number in chapters.numbers()}
-        book = [Contents(n, found, self.folder, self.code, studies).page(runs) for n, found in places.items()]
+        book = [Contents(n, found, self.folder, self.code, known).page(runs) for n, found in places.items()]
         book = [chapter for chapter in book if chapter["experiments"]]
         claims = [claim for chapter in book for claim in chapter["claims"]]
         index = self._equations(book)
@@ -96,7 +97,7 @@ class _Report:
             for experiment in chapter["experiments"]:
                 self._write_series(experiment["series"])
         self._index_search(book)
-        (self.folder / "search-index.js").write_text(_script("window.SEARCH_INDEX", self.search), encoding="utf-8")
+        (self.folder / "search-index.js").write_text(words.script("window.SEARCH_INDEX", self.search), encoding="utf-8")
 
     # ------------------------------------------------------------------------------------------------------ the search
 
@@ -193,7 +194,7 @@ class _Report:
 
     def _write_series(self, item: Mapping[str, Any] | None) -> None:
         if item:
-            text = _script(f"RECORDED[{json.dumps(item['name'])}]", item)
+            text = words.script(f"RECORDED[{json.dumps(item['name'])}]", item)
             (self.folder / "files" / item["name"] / "series.js").write_text(text, encoding="utf-8")
 
     def _provenance(self, book: Book) -> str:
@@ -214,8 +215,3 @@ def _results(chapter: Path) -> dict[str, Path]:
 def _strip(chapter: Mapping[str, Any]) -> dict[str, Any]:
     figures = [figure for experiment in chapter["experiments"] for figure in experiment["figures"]]
     return {"number": chapter["number"], "title": chapter["title"], "figures": in_book_order(figures)}
-
-
-def _script(name: str, data: Any) -> str:
-    """Data as a script that a page opened from disk may load."""
-    return f"{name} = {json.dumps(data, separators=(',', ':')).replace('<', chr(92) + 'u003c')};\n"

@@ -135,6 +135,21 @@ def test_a_run_with_other_parameters_is_shown_beside_the_books(browser: Browser,
     assert shown(browser, "plain") == pytest.approx(shown(browser, "book: plain") / 2, rel=1e-3)
 
 
+def test_every_draw_of_a_study_can_be_pointed_at_and_run_again(browser: Browser, report: Path) -> None:
+    browser.open(report / "chapter90.html", "#study-decay")
+    browser.wait("document.querySelectorAll('.whatif circle, .whatif .fails').length == 8")
+    browser.js("document.querySelector('.whatif svg').focus()")
+    browser.key("ArrowRight")
+    told = "document.querySelector('.whatif [aria-live]').innerText"
+    first = browser.js(told)
+    lines = Path("results/studies/decay.jsonl").read_text().splitlines()
+    draws = sorted((json.loads(line) for line in lines), key=lambda draw: draw["values"]["decay.start"])
+    assert f"Draw {draws[0]['index']}:" in first
+    assert f"dexrepro run chapter=90 only=decay decay.start={draws[0]['values']['decay.start']}" in first
+    browser.key("ArrowRight")
+    assert f"Draw {draws[1]['index']}:" in browser.js(told)
+
+
 def test_a_scene_moves_stops_and_shares_its_time_with_the_series(explorer: Browser) -> None:
     columns = {
         name: np.linspace(0, 2, 21, dtype=np.float32) * (name in ("time", "x"))

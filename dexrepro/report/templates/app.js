@@ -2,6 +2,7 @@
 window.RECORDED = {};  // what the pages' scripts of recorded series fill
 window.SERIES = {};
 window.SCENES = {};
+window.STUDIES = {};
 
 function make(tag, values = {}, ...inside) {
   const node = Object.assign(document.createElement(tag), values);
@@ -151,6 +152,16 @@ for (const place of document.querySelectorAll(".explorer")) {
       await showScene(shown, SCENES[recorded.name]);
     }
   });
+}
+
+// ---- what if: the draws of a study
+
+for (const place of document.querySelectorAll(".whatif")) {
+  place.closest("details").addEventListener("toggle", async () => {
+    await load("whatif.js");
+    await load(`files/${place.dataset.experiment}/study.js`);
+    whatIf(place, STUDIES[place.dataset.experiment]);
+  }, { once: true });
 }
 
 // ---- a link to something folded opens it
