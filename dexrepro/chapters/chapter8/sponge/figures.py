@@ -123,7 +123,7 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
         aside.plot(learned.time, deviation, label=f"${letter[0]}${letter[1:]}", **style.LINES[line])
     aside.set(ylabel="Off the path [mm]", xlim=(0, config.duration), ylim=(-0.1, 0.1))
     aside.legend(loc="upper right")
-    style.panel(aside, "a, b", "Proposed, across the path")
+    style.panel(aside, "a, b", "Across the path")
     surface = config.sponge.surface
     depth.set(xlim=(0, config.duration), ylabel="$z$ [m]")
     depth.set(ylim=(0.04, 0.15), xlabel="Time [s]")
@@ -141,7 +141,7 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     error.set(ylabel="$z_{1z}$ [mm]", xlabel="Time [s]", xlim=(0, config.duration), ylim=(-8, 8))
     error.text(0.98, 0.05, f"bound $\\pm${1e3 * config.bound[2]:g} mm, far outside", transform=error.transAxes,
                fontsize=7, ha="right")  # fmt: skip
-    style.panel(error, "d", "Error to the virtual reference")
+    style.panel(error, "d", "Error to $x_0$")
     figure.legend(*depth.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     less = metrics["lqr"]["final_compression"] - metrics["learned"]["final_compression"]
     style.title(figure, f"The learned law presses {less:.1f} mm less in the end, but more while it learns")
