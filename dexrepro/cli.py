@@ -406,7 +406,7 @@ def draw_command(options: argparse.Namespace) -> int:
     status = OK
     for number, experiment, folder in found:
         try:
-            redraw(number, experiment, folder)
+            redraw(number, experiment.name, folder)
         except Exception as error:  # a result of another version, say; the others can still be drawn
             err.print(f"{folder} cannot be drawn, run it again: {sentence(error)}", markup=False)
             status = FAILED

@@ -206,12 +206,13 @@ def _differs(
 
 
 def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[Experiment]:
-    """The experiments of a chapter named by ``only`` and those that make ``figure`` (a figure or table id)."""
+    """The experiments of a chapter named by ``only``, which may name others' too, that make ``figure`` (or table)."""
     experiments = chapters.load(chapter).experiments
     names = [experiment.name for experiment in experiments]
     wanted = names if only is None else [only] if isinstance(only, str) else list(only)
+    everywhere = {e.name for number in chapters.numbers() for e in chapters.load(number).experiments}
     for name in wanted:
-        if name not in names:
+        if name not in names and (name not in everywhere or not set(wanted) & set(names)):
             raise InputError(f"unknown experiment '{name}' in chapter {chapter}: {nearest(str(name), names)}")
     selected = [experiment for experiment in experiments if experiment.name in wanted]
     if figure is None:
