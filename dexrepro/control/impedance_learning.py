@@ -50,14 +50,15 @@ class ConstantGain:
     def __init__(
         self, gain: Sequence[float], initial: Sequence[float] | None = None, wait: float = 0.0, dt: float = 0.001
     ) -> None:
-        self._final: Sequence[float] = [float(entry) for entry in gain]
+        self._final = [float(entry) for entry in gain]
         self._initial = self._final if initial is None else [float(entry) for entry in initial]
         self._wait = round(wait / dt)
         self.reset()
 
     def reset(self) -> None:
         """Back to the gain at first contact."""
-        self.gain, self._steps = self._initial, 0
+        self.gain: Sequence[float] = self._initial
+        self._steps = 0
         self.exploration, self.phase, self.learned = 0.0, WAITING, None
 
     def update(self, indentation: float, reference: float, force: float) -> None:
