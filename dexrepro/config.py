@@ -40,6 +40,13 @@ class InputError(Exception):
     """Something the user wrote cannot be used; the message is one sentence that says what would be right."""
 
 
+def one_of(key: str, value: Any, allowed: Iterable[Any]) -> Any:
+    """``value`` of a configuration key where it is one of the words allowed. Raises InputError otherwise."""
+    if value not in (words := list(allowed)):
+        raise InputError(f"{key} = {value} is not allowed: it must be {' or '.join(map(str, words))}")
+    return value
+
+
 def config_dir() -> Path:
     """The folder of Hydra configurations: inside an installed wheel, or at the top of a checkout."""
     inside = Path(__file__).parent / "conf"

@@ -99,12 +99,19 @@ def node_centres(config: Config, target: Reference, nodes: int, rng: np.random.G
     return scaled[samples] + config.network.scatter * rng.standard_normal((nodes, 6))
 
 
-def network(config: Config, centres: Any) -> AdaptiveNetwork:
-    """exp(-|z - c|^2 / 2) at the centres; dW/dt = gain (S delta^T - leakage W)."""
-    gain = config.network.gain
-    return AdaptiveNetwork(
-        Gaussians(centres, np.sqrt(2.0)), 3, gain=gain, leakage=gain * config.network.leakage, step=config.arm.step
-    )
+def network(config: Config, centres: Any, target: Reference) -> AdaptiveNetwork:
+    """exp(-|z - c|^2 / 2) at the centres; dW/dt = gain (S delta^T - leakage W).
+
+    ``integrator``: one constant node in their place, at their mean |S|^2 along the reference times the gain and the
+    same rate of forgetting, so that the network is an integral of the velocity error and nothing else is changed.
+    """
+    gain, forgetting = config.network.gain, config.network.gain * config.network.leakage
+    nodes = Gaussians(centres, np.sqrt(2.0))
+    if config.network.integrator:
+        inputs = np.concatenate([target[0] / 0.35, target[1] / 1.2], axis=1)[::10]
+        gain *= np.mean([np.sum(nodes(z) ** 2) for z in inputs])
+        nodes = Gaussians(np.zeros((1, 6)), 1e9)
+    return AdaptiveNetwork(nodes, 3, gain=gain, leakage=forgetting, step=config.arm.step)
 
 
 def law(config: Config, nominal: RigidBodyModel, learner: AdaptiveNetwork | None) -> Any:
