@@ -32,8 +32,12 @@ SHARE ?= 0.1
 mutation: .venv/ready
 	$(BIN)/python tests/mutation/mutate.py $(PLACES) --share $(SHARE)
 
+# What is uploaded: built, checked, installed into an empty environment and run from an empty folder.
 wheel: .venv/ready
+	rm -rf dist
 	$(BIN)/python -m build
+	$(BIN)/python -m twine check --strict dist/*
+	.ci/try-wheel dist/*.whl
 
 .venv/ready: pyproject.toml .ci/constraints.txt .ci/environment
 	.ci/environment $(EXTRAS) $(PYTHON)

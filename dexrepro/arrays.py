@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,16 @@ Real = float | Array
 
 Number = TypeVar("Number", float, Array)
 """The same where what comes back is of the kind that was given."""
+
+Held = TypeVar("Held", covariant=True)
+
+
+class Row(Protocol[Held]):
+    """Numbers by index: a list or tuple of floats, or the rows of an array."""
+
+    def __getitem__(self, index: int, /) -> Held:
+        """The number of an index."""
+
 
 Rng = Callable[[str], np.random.Generator]
 """``rng("noise")``: the generator of a named purpose. Compared cases share what they draw for one purpose."""

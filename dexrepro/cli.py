@@ -1,4 +1,4 @@
-"""The command line: dexrepro run | list | check | draw | report | render | study | new | diff; each command is thin."""
+"""The command line: dexrepro run, list, check, draw, report, render, study, new, diff, completion; each is thin."""
 
 from __future__ import annotations
 
@@ -62,7 +62,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _dispatch(arguments: list[str]) -> int:
     if arguments[:1] == ["run"]:
         return run_command(arguments[1:])
-    options = _parser().parse_args(arguments)
+    parser = _parser()
+    if "_ARGCOMPLETE" in os.environ:
+        from dexrepro.completion import complete
+
+        complete(parser)
+    options = parser.parse_args(arguments)
     return int(options.function(options))
 
 
@@ -89,10 +94,13 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="dexrepro", description="Reproduce the book's figures and check its claims.")
     parser.add_argument("--version", action="version", version=f"dexrepro {__version__}")
     parser.add_argument("--experiments", metavar="DIR", help="experiments of your own, beside the book's")
-    commands = parser.add_subparsers(required=True, metavar="command")
-    commands.add_parser("run", help="simulate, measure and draw (see: dexrepro run --help)", add_help=False)
+    commands = parser.add_subparsers(required=True, metavar="command", dest="command")
     selection = argparse.ArgumentParser(add_help=False)
-    selection.add_argument("selection", nargs="*", metavar="key=value", help="chapter=N, only=EXPERIMENT, results=DIR")
+    words = selection.add_argument(
+        "selection", nargs="*", metavar="key=value", help="chapter=N, only=EXPERIMENT, results=DIR"
+    )
+    words.completer = _completions  # type: ignore[attr-defined]
+    commands.add_parser("run", parents=[selection], help="simulate, measure and draw (see: dexrepro run --help)")
 
     listing = commands.add_parser("list", help="chapters, experiments, cases, figures, claims, errata")
     listing.add_argument("--json", action="store_true")
@@ -120,6 +128,7 @@ def _parser() -> argparse.ArgumentParser:
 
     new = commands.add_parser("new", help="write a working control law of your own, with its test")
     new.add_argument("what", choices=["controller"])
+    new.add_argument("--kind", choices=["joint", "end_point", "holding"], default="holding")
     new.add_argument("name", help="class name, for example MyLaw")
     new.set_defaults(function=new_command)
 
@@ -127,7 +136,17 @@ def _parser() -> argparse.ArgumentParser:
     diff.add_argument("a", type=Path)
     diff.add_argument("b", type=Path)
     diff.set_defaults(function=diff_command)
+
+    completion = commands.add_parser("completion", help='for Tab: eval "$(dexrepro completion bash)"')
+    completion.add_argument("shell", choices=("bash", "zsh", "fish"))
+    completion.set_defaults(function=completion_command)
     return parser
+
+
+def _completions(**context: Any) -> list[str]:
+    from dexrepro.completion import words
+
+    return list(words(**context))
 
 
 # -------------------------------------------------------------------------------------------------------------- run
@@ -379,10 +398,10 @@ def report_command(options: argparse.Namespace) -> int:
 
 
 def new_command(options: argparse.Namespace) -> int:
-    """``dexrepro new controller NAME``."""
+    """``dexrepro new controller NAME [--kind KIND]``."""
     from dexrepro.scaffold import new_controller
 
-    law, test, command = new_controller(options.name, Path())
+    law, test, command = new_controller(options.name, options.kind, Path())
     out.print(f"wrote {law} and {test}; try:\n  pytest {test}\n  {command}", markup=False)
     return OK
 
@@ -503,6 +522,14 @@ def _print_study(name: str, path: Path, results: Path) -> None:
         interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
         most = f", follows {row['parameter']} most" if row["parameter"] else ""
         out.print(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}){most}", markup=False)
+
+
+def completion_command(options: argparse.Namespace) -> int:
+    """``dexrepro completion bash|zsh|fish``."""
+    from dexrepro.completion import script
+
+    print(script(options.shell))
+    return OK
 
 
 def diff_command(options: argparse.Namespace) -> int:

@@ -243,7 +243,8 @@ def own_digest(values: Mapping[str, Any]) -> str:
     paths = own_modules(values)
     for key, text in leaves(values):
         if isinstance(text, str) and "." in text and key.rpartition(".")[2] != "_target_":
-            paths.update(path for name in (text, *glob.glob(text)) if (path := Path(name)).is_file())
+            name = os.path.expanduser(text)
+            paths.update(path for found in (name, *glob.glob(name)) if (path := Path(found)).is_file())
     if any(text.startswith("__main__.") for text in targets(values)):
         return uuid.uuid4().hex
     return digest_of([[str(path), _file_digest(path)] for path in sorted(paths)])

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -18,21 +19,47 @@ ROOT = Path(dexrepro.__file__).parent.parent
 TOY = Path(__file__).parent / "toy"
 
 
+@contextlib.contextmanager
+def toy_chapter(folder: Path, book: Path) -> Iterator[Path]:
+    """Make chapter 90 the only chapter, here and in commands started from here; work in a folder."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(chapters.ADDED, str(shutil.copytree(TOY, book)))
+        patch.chdir(folder)
+        chapters.forget()
+        yield folder
+    chapters.forget()
+
+
 @pytest.fixture
 def toy_book(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A book of one tiny chapter, 90, outside the package."""
-    return Path(shutil.copytree(TOY, tmp_path_factory.mktemp("toy") / "book"))
+    return tmp_path_factory.mktemp("toy") / "book"
 
 
 @pytest.fixture
-def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, toy_book: Path) -> Path:
-    """Make chapter 90 the only chapter, here and in commands started from here; work in an empty folder."""
-    monkeypatch.setenv(chapters.ADDED, str(toy_book))
-    monkeypatch.chdir(tmp_path)
-    chapters.forget()
-    yield tmp_path
-    monkeypatch.undo()
-    chapters.forget()
+def toy(tmp_path: Path, toy_book: Path) -> Iterator[Path]:
+    """Chapter 90 is the only one; the folder in which one works is empty."""
+    with toy_chapter(tmp_path, toy_book) as folder:
+        yield folder
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A report of chapter 90, with a film, built once for the tests of a module."""
+    from PIL import Image
+
+    from dexrepro.plan import plan_chapter
+    from dexrepro.report import page
+    from dexrepro.runner import run_plans
+
+    with toy_chapter(tmp_path_factory.mktemp("work"), tmp_path_factory.mktemp("toy") / "book") as folder:
+        plans, _ = plan_chapter("90")
+        run_plans(plans, workers=1, force=False)
+        films = folder / "results/chapter90/decay/animation"
+        films.mkdir()
+        for name in ("plain.gif", "plain.png"):
+            Image.new("RGB", (80, 33), "white").save(films / name)
+        yield page.build(Path("results")).parent.resolve()
 
 
 Shell = Callable[..., subprocess.CompletedProcess[str]]

@@ -196,10 +196,13 @@ def test_a_recorded_run_is_animated_without_simulating(shell: Shell, tmp_path: P
     assert "did you mean 'k35'" in shell(f"dexrepro render {folder} case=k36").stderr
 
 
-def test_a_new_controller_comes_with_a_test_that_passes(shell: Shell, tmp_path: Path) -> None:
-    done = shell("dexrepro new controller MyLaw")
+@pytest.mark.parametrize("kind", ["joint", "end_point", "holding"])
+def test_a_new_controller_comes_with_a_test_that_passes(shell: Shell, kind: str) -> None:
+    done = shell(f"dexrepro new controller MyLaw --kind {kind}")
     assert done.returncode == 0, done.stderr
     assert "my_law.MyLaw" in done.stdout
     assert shell(f"{sys.executable} -m pytest -q -p no:cacheprovider test_my_law.py").returncode == 0
+    command = done.stdout.splitlines()[-1].strip()
+    assert shell(f"{command} --cfg job").returncode == 0
     assert "exists already" in shell("dexrepro new controller MyLaw").stderr
     assert "must be a class name" in shell("dexrepro new controller my-law").stderr

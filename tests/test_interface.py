@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
-FOLDERS = ("humans", "networks", "physics", "primitives", "robots", "vision")
+FOLDERS = ("control", "humans", "networks", "physics", "primitives", "robots", "vision")
 Definition = ast.ClassDef | ast.FunctionDef
 
 

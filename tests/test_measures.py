@@ -7,7 +7,8 @@ from dexrepro.measures import angle_between, binomial_interval, last_outside, rm
 
 
 def test_root_mean_squares_of_numbers_and_of_distances():
-    assert rms([3.0, -3.0]) == 3.0
+    assert rms([1.0, -7.0]) == 5.0  # the mean of the magnitudes is 4
+    assert rms_distance([[1.0, 0.0], [0.0, -7.0]]) == 5.0
     paths = np.zeros((2, 5, 3)) + np.array([3.0, 0.0, 4.0])
     assert rms_distance(paths) == pytest.approx([5.0, 5.0])
     assert rms_distance(paths[0], paths[1]) == 0.0

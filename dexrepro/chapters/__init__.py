@@ -1,6 +1,6 @@
 """What experiments there are: the chapters of the book and those a user adds, all found by their folders.
 
-A chapter is a folder of experiments with, where it has them, ``TITLE`` and ``ORDER`` in its ``__init__.py``,
+A chapter is a folder of experiments with, where it has them, ``TITLE``, ``ORDER`` and ``FAIRNESS`` in its ``__init__.py``,
 ``errata.py`` and ``claims.py`` (claims that no experiment can test); an experiment is a folder that holds
 ``experiment.py``, see :class:`dexrepro.experiment.Experiment`. Folders outside the package are named by
 ``--experiments`` or the environment variable ``DEXREPRO_EXPERIMENTS``. Such a folder holds chapters, or is itself one;
@@ -43,7 +43,10 @@ class Book:
 
 @dataclass(frozen=True)
 class Chapter:
-    """What a chapter's folder offers; claims in the order of their numbers."""
+    """What a chapter's folder offers; claims in the order of their numbers.
+
+    fairness: which settings are made equal between the rivals that its claims are judged by.
+    """
 
     number: str
     title: str
@@ -52,6 +55,7 @@ class Chapter:
     claims: tuple[Claim, ...]
     references: tuple[Reference, ...]
     errata: tuple[Erratum, ...]
+    fairness: str = ""
 
     def experiment(self, name: str) -> Experiment:
         return next(experiment for experiment in self.experiments if experiment.name == name)
@@ -103,6 +107,11 @@ def numbers() -> tuple[str, ...]:
     return tuple(sorted(folders(), key=natural))
 
 
+def names(number: str) -> list[str]:
+    """Names of a chapter's experiments, found without importing any."""
+    return sorted(_experiments(folders()[number]))
+
+
 def natural(text: str) -> list[tuple[int, str]]:
     """Sorting key under which C1.9 comes before C1.10."""
     return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", text)]
@@ -114,8 +123,8 @@ def load(number: str) -> Chapter:
     folder = Path(__file__).parent / OWN if number == OWN else folders()[number]
     package = _package(folder)
     order = list(getattr(package, "ORDER", ()))
-    names = sorted(_experiments(folder), key=lambda name: (order.index(name) if name in order else len(order), name))
-    experiments = tuple(Experiment(f"{package.__name__}.{name}", folder / name) for name in names)
+    found = sorted(_experiments(folder), key=lambda name: (order.index(name) if name in order else len(order), name))
+    experiments = tuple(Experiment(f"{package.__name__}.{name}", folder / name) for name in found)
     claims = [claim for experiment in experiments for claim in experiment.claims]
     claims += _part(package, folder, "claims", "CLAIMS")
     return Chapter(
@@ -126,6 +135,7 @@ def load(number: str) -> Chapter:
         tuple(sorted(claims, key=lambda claim: natural(claim.id))),
         tuple(reference for experiment in experiments for reference in experiment.references),
         tuple(_part(package, folder, "errata", "ERRATA")),
+        str(getattr(package, "FAIRNESS", "")),
     )
 
 

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
-from numpy.typing import NDArray
-
+from dexrepro.arrays import Array
 from dexrepro.config import InputError
-from dexrepro.primitives.recorded import demonstrations
+from dexrepro.experiment import Config
+from dexrepro.primitives.recorded import Format, demonstrations
 
 
-def recorded(files: str | Sequence[str], count: int, samples: int, unit: str, axes: int) -> list[NDArray[Any]]:
-    """``count`` paths (samples, axes) [cm] from CSV files; see :func:`dexrepro.primitives.recorded.demonstrations`.
+def recorded(files: str | Sequence[str], count: int, samples: int, config: Config, axes: int) -> list[Array]:
+    """``count`` paths (samples, axes) [cm] from files; see :func:`dexrepro.primitives.recorded.demonstrations`.
 
-    Their duration is scaled to that of the experiment. Raises InputError where a file cannot be used.
+    config: an experiment's, with what :class:`Format` knows. Their duration is scaled to that of the experiment; where
+    nothing tells the unit, it is cm. Raises InputError where a file cannot be used.
     """
     try:
-        return [100 * path for path in demonstrations(files, count, samples, unit, axes)]
+        style = Format(**{key: config[key] for key in ("unit", "time_unit", "duplicates", "encoding")})
+        return [100 * path for path in demonstrations(files, count, samples, style, axes, "cm")]
     except ValueError as error:
         raise InputError(f"demonstrations: {error}") from error

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.control.task_space import ArmState, Motion
+from dexrepro.arrays import Array, Real
+from dexrepro.control.contract import Command, Kind, Measured
+from dexrepro.control.motion import Motion
 from dexrepro.networks import AdaptiveNetwork
-
-Array = NDArray[np.float64]
 
 
 def barrier_terms(error: float, bound: float) -> tuple[float, float, float]:
@@ -34,15 +34,18 @@ def barrier_energy(error: Array, bound: Array | float) -> Array:
 class BarrierTracking:
     """Tracking law of Eq. (8.31), its estimates and their factors written out; it knows nothing of the arm's dynamics.
 
-    F = -z1/cos^2(...) + D alpha' + C alpha + G - Kp z2 - Kr sgn(z2) + force_sign tau_e, with z1 = x - x_0,
+    F = -z1/cos^2(...) + D alpha' + C alpha + G - Kp z2 - Kr sgn(z2) - s tau_e, with z1 = x - x_0,
     alpha = -K1 phi + x_0', z2 = x' - alpha. The networks see x (inertia, gravity) and [x, x'] (coriolis) and adapt with
     z2, Eqs. (8.38) to (8.40).
 
     networks: of d^2, d^2 and d outputs for D, C and G, whose bases may grow. bound: iota [m];
     position_gain: K1 [1/s]; velocity_gain: Kp [N s/m]; robust_gain: Kr [N]; one entry an axis.
-    boundary_layer: 0 for the sign of z2, or delta [m/s] of tanh(z2/delta). force_sign: -1 cancels a force tau_e that
-    acts on the arm; +1 is printed.
+    boundary_layer: 0 for the sign of z2, or delta [m/s] of tanh(z2/delta). force_feedback: s, 1 cancels a force tau_e
+    that acts on the arm; printed: + tau_e.
     """
+
+    kind: ClassVar[Kind] = "end_point"
+    needs = ("networks",)
 
     def __init__(
         self,
@@ -52,48 +55,44 @@ class BarrierTracking:
         velocity_gain: Sequence[float],
         robust_gain: Sequence[float],
         boundary_layer: float = 0.0,
-        force_sign: float = -1.0,
+        force_feedback: float = 1.0,
+        printed: bool = False,
     ) -> None:
         self.networks = networks
         self._gains = [[float(value) for value in part] for part in (bound, position_gain, velocity_gain, robust_gain)]
-        self.boundary_layer, self.force_sign = boundary_layer, force_sign
+        self.boundary_layer, self._force_sign = boundary_layer, force_feedback if printed else -force_feedback
         self.network_force = np.zeros(len(bound))
 
-    @property
-    def nodes(self) -> Array:
-        """Number of nodes of D, C and G, shape (3,)."""
-        return np.array([getattr(network.basis, "nodes", network.basis.capacity) for network in self.networks])
-
-    @property
-    def feature_power(self) -> float:
-        """Squared length of the features of G: its adaptation gain per unit of its rate."""
-        features = self.networks[2].features
-        return float(features @ features)
-
-    def reset(self) -> None:
+    def reset(self, measured: Measured[Array]) -> None:
+        """Forget everything learned."""
         for network in self.networks:
-            network.reset()
-            if hasattr(network.basis, "reset"):
-                network.basis.reset()
+            network.forget()
 
-    def __call__(self, arm: ArmState, reference: Motion, force: Array) -> Array:
-        """Force at the end effector [N]; the networks learn from the same call."""
-        velocity_error, rate, rate_slope, feedback = self._feedback(arm, reference)
+    def diagnostics(self) -> Mapping[str, Real]:
+        """Nodes of D, C and G (3,), the force of the networks (d,) [N], and the squared length of the features of G."""
+        nodes = np.array([network.nodes for network in self.networks])
+        features = self.networks[2].features
+        return {"nodes": nodes, "network_force": self.network_force, "feature_power": float(features @ features)}
+
+    def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
+        """Force at the end point (d,) [N]; the networks learn from the same call."""
+        _, position, velocity, force, *_ = measured
+        velocity_error, rate, rate_slope, feedback = self._feedback(position, velocity, desired)
         inertia, coriolis, gravity = self.networks
         axes = len(rate)
         self.network_force = (
-            inertia.output(arm.position, grow=True).reshape(axes, axes) @ rate_slope
-            + coriolis.output(np.concatenate((arm.position, arm.velocity)), grow=True).reshape(axes, axes) @ rate
-            + gravity.output(arm.position, grow=True)
+            inertia.output(position, grow=True).reshape(axes, axes) @ rate_slope
+            + coriolis.output(np.concatenate((position, velocity)), grow=True).reshape(axes, axes) @ rate
+            + gravity.output(position, grow=True)
         )
         inertia.adapt((velocity_error[:, None] * -rate_slope).ravel())
         coriolis.adapt((velocity_error[:, None] * -rate).ravel())
         gravity.adapt(-velocity_error)
-        return self.network_force + feedback + self.force_sign * force
+        return Command(force=self.network_force + feedback + self._force_sign * force)
 
-    def _feedback(self, arm: ArmState, reference: Motion) -> tuple[Array, Array, Array, Array]:
+    def _feedback(self, position: Array, velocity: Array, desired: Motion[Array]) -> tuple[Array, Array, Array, Array]:
         """z2, alpha, alpha' and the force of barrier, velocity and robust term, each (d,); scalars are fastest."""
-        motions = zip(arm.position.tolist(), arm.velocity.tolist(), *(part.tolist() for part in reference))
+        motions = zip(position.tolist(), velocity.tolist(), *(part.tolist() for part in desired))
         columns = []
         for (x, v, x_ref, v_ref, a_ref), bound, k1, kp, kr in zip(motions, *self._gains):
             phi, slope, barrier = barrier_terms(x - x_ref, bound)

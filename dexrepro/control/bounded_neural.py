@@ -3,31 +3,26 @@
 from __future__ import annotations
 
 import math
-from typing import Literal, Protocol
+from collections.abc import Collection, Mapping
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from dexrepro.arrays import Array
+from dexrepro.control.contract import (
+    Command,
+    Kind,
+    Measured,
+    Network,
+    NominalModel,
+    coriolis,
+    printed_forms,
+)
+from dexrepro.control.motion import Motion
 from dexrepro.control.prescribed_performance import PerformanceBound
 
-Array = NDArray[np.float64]
-
 CLIP = 0.9998  # share of the bound beyond which the barrier's push no longer grows, 1 - CLIP^2 = 0.02^2
-
-
-class NominalModel(Protocol):
-    def mass_matrix(self, position: Array) -> Array: ...
-    def gravity(self, position: Array) -> Array: ...
-    def bias(self, position: Array, velocity: Array) -> Array: ...
-
-
-class Network(Protocol):
-    """A learning approximator, such as :class:`dexrepro.networks.AdaptiveNetwork`."""
-
-    weights: Array
-
-    def output(self, z: Array, grow: bool = False) -> Array: ...
-    def adapt(self, error: Array) -> None: ...
 
 
 class BoundedNeuralTracking:
@@ -40,11 +35,12 @@ class BoundedNeuralTracking:
 
     model: nominal. network: None leaves the term out; it sees z = [q / position_scale, q' / velocity_scale].
     bound: upper factor k_2, lower factor k_1 [rad]. convergence: k_c [1/s]. velocity_gain: K_tau [N m s/rad].
-    barrier_gain: rho [N m rad]. network_sign: 1, or -1 as printed. virtual_gain: which L. robust_rate: u, with
-    robust_width w [rad/s]. torque_limit [N m]. dt: control period [s].
-
-    After a call: ``error`` e [rad], ``velocity_error`` delta [rad/s].
+    barrier_gain: rho [N m rad]. printed: "network", its sign; "virtual_gain", L. robust_rate: u, with robust_width w
+    [rad/s]. torque_limit [N m]. dt: control period [s].
     """
+
+    kind: ClassVar[Kind] = "joint"
+    needs = ("model", "network")
 
     def __init__(
         self,
@@ -58,8 +54,7 @@ class BoundedNeuralTracking:
         dt: float,
         position_scale: float = 0.35,
         velocity_scale: float = 1.2,
-        network_sign: int = 1,
-        virtual_gain: Literal["corrected", "printed"] = "corrected",
+        printed: Collection[str] = (),
         robust_rate: float = 0.0,
         robust_width: float = 0.1,
         torque_limit: float = math.inf,
@@ -67,49 +62,47 @@ class BoundedNeuralTracking:
         self.model, self.network, self.bound, self.dt = model, network, bound, dt
         self.convergence, self.velocity_gain, self.barrier_gain = convergence, velocity_gain, barrier_gain
         self.position_scale, self.velocity_scale = position_scale, velocity_scale
-        self.network_sign, self.virtual_gain = network_sign, virtual_gain
+        forms = printed_forms(printed, ("network", "virtual_gain"))
+        self._network_sign, self._printed_gain = -1 if "network" in forms else 1, "virtual_gain" in forms
         self.robust_rate, self.robust_width, self.torque_limit = robust_rate, robust_width, torque_limit
-        self.reset()
+        self._periods, self.velocity_error = 0, np.zeros(0)
 
-    def reset(self) -> None:
+    def reset(self, measured: Measured[Array]) -> None:
         """Start the bound anew; the network keeps what it has learned."""
         self._periods = 0
-        self.error = self.velocity_error = np.zeros(0)
 
-    def __call__(
-        self, q: Array, dq: Array, desired: tuple[Array, Array, Array], contact_torque: ArrayLike = 0.0
-    ) -> Array:
-        """Joint torque (n,) [N m] at measured angles and rates, for the reference's position, velocity, acceleration.
+    def diagnostics(self) -> Mapping[str, Array]:
+        """delta (n,) [rad/s] of the last call."""
+        return {"velocity_error": self.velocity_error}
 
-        contact_torque: estimate of tau_e = J^T F_e [N m], the torque that the environment exerts on the arm.
-        """
-        q_d, dq_d, ddq_d = desired
+    def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
+        """Torque (n,) [N m]; tau_e is the measured external torque."""
+        (_, q, dq, contact, *_), (q_d, dq_d, ddq_d) = measured, desired
         nu, gain, gain_rate = self._virtual_gain()
-        self.error = e = q_d - q
+        e = q_d - q
         alpha = dq_d - gain * e
         alpha_rate = ddq_d - gain * (dq_d - dq) - gain_rate * e
         self.velocity_error = delta = alpha - dq
-        # The Coriolis matrix times another vector from inverse dynamics alone: C(q, u) w = [h(u + w) - h(u - w)] / 4.
-        plus, minus = self.model.bias(q_d, dq_d + alpha), self.model.bias(q_d, dq_d - alpha)
-        torque = self.model.mass_matrix(q_d) @ alpha_rate + (plus - minus) / 4 + self.model.gravity(q_d)
-        torque += self.velocity_gain * delta - np.asarray(contact_torque)
+        torque = self.model.mass_matrix(q_d) @ alpha_rate + coriolis(self.model, q_d, dq_d, alpha)
+        torque += self.model.gravity(q_d)
+        torque += self.velocity_gain * delta - contact
         if self.barrier_gain:
             torque += self.barrier_gain * self.bound.barrier_gradient(e, nu, CLIP)
         if self.network is not None:
             z = np.concatenate([q / self.position_scale, dq / self.velocity_scale])
-            torque += self.network_sign * self.network.output(z)
+            torque += self._network_sign * self.network.output(z)
             self.network.adapt(delta)
             if self.robust_rate:
                 u = self.robust_rate
                 self.network.weights[...] += self.dt * u * np.tanh(u * delta / self.robust_width) * delta
-        return np.minimum(np.maximum(torque, -self.torque_limit), self.torque_limit)
+        return Command(np.minimum(np.maximum(torque, -self.torque_limit), self.torque_limit))
 
     def _virtual_gain(self) -> tuple[float, float, float]:
         """The bound nu, L [1/s] and its derivative [1/s^2]."""
         nu, ratio, ratio_rate = self.bound.rate(self._periods * self.dt)
         self._periods += 1
         sign = math.copysign(1.0, ratio)
-        if self.virtual_gain == "corrected":
+        if not self._printed_gain:
             return nu, -(self.convergence + abs(ratio)), -sign * ratio_rate
         factor = math.sqrt(1 / self.bound.upper**2 + 1 / self.bound.lower**2 + self.convergence**2)
         return nu, -factor * abs(ratio), -factor * sign * ratio_rate

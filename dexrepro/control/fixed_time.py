@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, Protocol
+from collections.abc import Callable, Mapping, Sequence
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array, Real
+from dexrepro.control.contract import Command, Kind, Measured, Network
+from dexrepro.control.motion import Motion
+
 TINY = 1e-9  # error below which the secant slope of the root is no longer increased
 
 
-class Network(Protocol):
-    """A function approximator that learns while it controls, such as networks.AdaptiveNetwork."""
-
-    def output(self, z: Array, grow: bool = False) -> Array: ...
-
-    def adapt(self, error: Array) -> None: ...
-
-    def reset(self) -> None: ...
-
-
-def signed_power(x: Any, power: float) -> Any:
+def signed_power(x: Real, power: float) -> Real:
     """SIG^r(x), element by element: |x_i|^r sign(x_i), Eq. (3.12) without its square root."""
     return np.sign(x) * np.abs(x) ** power
 
@@ -43,8 +35,12 @@ class FixedTimeBackstepping:
     first: K11, K12, K13; second: K21, K22, K23; powers: alpha < 1 < beta. network: W^T S, or None for none.
     smoothing: time constant [s] of the filter on the numerical derivative of x_2d (the exact one is unbounded where
     an error changes sign). printed: keep the + e2 inside x_2d, Eq. (3.25) as printed, solved for e2. dt: period [s].
-    The terms in e2 are returned as torque and damping, so that they can be applied implicitly.
+    The terms in e2 are returned as torque and damping, so that they can be applied implicitly. ``part`` says by what
+    of e2 (n,) [rad/s] the weights are driven; all of it as printed, (3.28).
     """
+
+    kind: ClassVar[Kind] = "joint"
+    part: Callable[[Array], Array] | None = None
 
     def __init__(
         self,
@@ -60,40 +56,40 @@ class FixedTimeBackstepping:
         self.first, self.second, self.powers = tuple(first), tuple(second), tuple(powers)
         self.dt, self.network, self._share = dt, network, (0.5 if printed else 1.0)
         self._smoothing = (dt / smoothing) / (1.0 + dt / smoothing)
-        self.reset()
+        self._forget()
 
-    def reset(self) -> None:
+    def reset(self, measured: Measured[Array]) -> None:
         """Forget the past: the filtered derivative and the weights."""
+        self._forget()
+
+    def _forget(self) -> None:
         self.virtual: Array | None = None
-        self.rate: Any = 0.0
-        self.error = np.zeros(0)
+        self.rate: Real = 0.0
         if self.network is not None:
-            self.network.reset()
+            self.network.forget()
 
-    def __call__(self, error: Array, position: Array, velocity: Array, desired: Array) -> tuple[Array, Array]:
-        """Torque [N m] and damping [N m s/rad], (n,) each.
+    def diagnostics(self) -> Mapping[str, Real]:
+        """Number of nodes of the network."""
+        return {} if self.network is None else {"nodes": self.network.nodes}
 
-        error: e1 [rad]; position, velocity: measured q, dq [rad, rad/s]; desired: dq_d [rad/s]. ``error`` of the law,
-        e2 [rad/s], and its reference ``virtual``, x_2d, can be read afterwards; call :meth:`adapt` to learn from e2.
-        """
-        goal = desired - secant(error, self.first, *self.powers) * error
+    def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
+        """Torque [N m] and damping [N m s/rad], (n,) each; the network learns from the same call."""
+        _, position, velocity, *_ = measured
+        error = position - desired.position
+        goal = desired.velocity - secant(error, self.first, *self.powers) * error
         second = self._share * (velocity - goal)
         virtual = velocity - second
         if self.virtual is None:
             self.rate = np.zeros_like(virtual)
         else:
             self.rate += self._smoothing * ((virtual - self.virtual) / self.dt - self.rate)
-        self.virtual, self.error = virtual, second
+        self.virtual = virtual
         damping = self._share * secant(second, self.second, *self.powers)
         torque: Array = damping * goal - error
         if self.network is not None:
             torque -= self.network.output(np.concatenate((position, velocity, virtual, self.rate)), grow=True)
-        return torque, damping
-
-    def adapt(self, error: Array | None = None) -> None:
-        """One step of the weight law, Eq. (3.28), driven by e2 or by what of it is given, (n,) [rad/s]."""
-        if self.network is not None:
-            self.network.adapt(self.error if error is None else error)
+            self.network.adapt(second if self.part is None else self.part(second))
+        return Command(torque, damping)
 
 
 def settling_bound(

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import ClassVar
+
+from dexrepro.arrays import Real
+from dexrepro.control.contract import Kind, Measured
 
 
 class ForceControl:
@@ -11,14 +14,18 @@ class ForceControl:
     gain: [m/N]. desired_force: [N]. Against a spring k_o it leaves the error (f(0) - f_d) / (1 + gain k_o).
     """
 
-    def __init__(self, *, gain: Any, desired_force: Any) -> None:
+    kind: ClassVar[Kind] = "holding"
+
+    def __init__(self, *, gain: Real, desired_force: Real) -> None:
         self.gain, self.desired_force = gain, desired_force
 
-    def reset(self, position: Any) -> None:
-        self._start = position
+    def reset(self, measured: Measured[Real]) -> None:
+        """Take the present position as x_1(0)."""
+        self._start = measured.position
 
-    def __call__(self, position: Any, force: Any) -> Any:
-        return self._start + self.gain * (force - self.desired_force)
+    def __call__(self, measured: Measured[Real]) -> Real:
+        """Reference [m]."""
+        return self._start + self.gain * (measured.force - self.desired_force)
 
 
 class IntegralForceControl:
@@ -27,12 +34,16 @@ class IntegralForceControl:
     rate: [m/(s N)]. desired_force: [N]. dt: control period [s].
     """
 
-    def __init__(self, *, rate: Any, desired_force: Any, dt: float) -> None:
+    kind: ClassVar[Kind] = "holding"
+
+    def __init__(self, *, rate: Real, desired_force: Real, dt: float) -> None:
         self.rate, self.desired_force, self.dt = rate, desired_force, dt
 
-    def reset(self, position: Any) -> None:
-        self._reference = position
+    def reset(self, measured: Measured[Real]) -> None:
+        """Start the reference where the arm is."""
+        self._reference = measured.position
 
-    def __call__(self, position: Any, force: Any) -> Any:
-        self._reference = self._reference + self.dt * self.rate * (force - self.desired_force)
+    def __call__(self, measured: Measured[Real]) -> Real:
+        """Reference [m]."""
+        self._reference = self._reference + self.dt * self.rate * (measured.force - self.desired_force)
         return self._reference

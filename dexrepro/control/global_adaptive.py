@@ -3,31 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dgesv
 
+from dexrepro.arrays import Array
+from dexrepro.control.contract import Command, Kind, Measured, Network
+from dexrepro.control.motion import Motion
 from dexrepro.control.prescribed_performance import PerformanceBound
-
-Array = NDArray[np.float64]
 
 
 class Kinematics(Protocol):
-    """The part of a robot model that the law needs: task position (m,) and its Jacobian (m, n) at joint position q."""
+    """The part of a robot model that the law needs: the Jacobian at joint angles, whose first m rows are the task's."""
 
-    def position(self, q: Array) -> Array: ...
-    def jacobian(self, q: Array) -> Array: ...
-
-
-class Network(Protocol):
-    """A learning approximator, such as :class:`dexrepro.networks.AdaptiveNetwork`."""
-
-    def output(self, z: Array, grow: bool = False) -> Array: ...
-    def adapt(self, error: Array) -> None: ...
+    def jacobian(self, q: Array) -> Array:
+        """(m or more, n) [m/rad], at joint angles (n,) [rad]."""
 
 
 @dataclass(frozen=True)
@@ -88,9 +83,11 @@ class GlobalAdaptiveControl:
     K_2 [N m s/rad], one a joint. floor: c in L(t) [1/s^2]. barrier: False leaves J^T P out. reduced_input: Xi = [q,
     alpha'] instead of [q, q', alpha, alpha']. step: control period [s].
 
-    After a call: ``error`` z_1 [m], ``usage`` chi, ``velocity_error`` z_2 [rad/s], ``share`` E, ``input`` Xi.
-    ``learning`` False freezes weights and nodes.
+    After a call ``error`` is z_1 [m], ``velocity_error`` z_2 [rad/s]; ``learning`` False freezes weights and nodes.
     """
+
+    kind: ClassVar[Kind] = "end_point"
+    needs = ("model", "network")
 
     def __init__(
         self,
@@ -112,25 +109,25 @@ class GlobalAdaptiveControl:
         self.velocity_gain = np.asarray(velocity_gain, dtype=float)
         self.step, self.floor, self.barrier, self.reduced_input = step, floor, barrier, reduced_input
         self.learning = True
-        self.reset()
+        self._periods, self.share = 0, 1.0
+        self.error = self.usage = self.velocity_error = self.input = np.empty(0)
 
-    def reset(self) -> None:
+    def reset(self, measured: Measured[Array]) -> None:
         """Start the bound anew; the network keeps what it has learned."""
         self._periods = 0
-        self.error = self.usage = self.velocity_error = self.input = np.empty(0)
-        self.share = 1.0
 
-    def __call__(
-        self, q: Array, dq: Array, position: Array, velocity: Array, acceleration: Array
-    ) -> tuple[Array, Array]:
-        """Joint torque [N m] without -K_2 q', and that damping K_2 [N m s/rad], for the world to apply implicitly.
+    def diagnostics(self) -> Mapping[str, Array | float]:
+        """Share of the bound chi (m,), E, and input Xi of the last call; those of the network."""
+        network = {} if self.network is None else self.network.diagnostics()
+        return {"usage": self.usage, "share": self.share, "input": self.input, **network}
 
-        q, dq: joint position and velocity (n,). position, velocity, acceleration: the reference in task space (m,).
-        """
+    def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
+        """Joint torque (n,) [N m] without -K_2 q', and that damping K_2 [N m s/rad]."""
+        (_, place, _, _, q, dq), (position, velocity, acceleration) = measured, desired
         nu, ratio, ratio_rate = self.bound.rate(self._periods * self.step)
         self._periods += 1
-        jacobian = self.model.jacobian(q)
-        self.error = self.model.position(q) - position
+        self.error = place - position
+        jacobian = self.model.jacobian(q)[: len(self.error)]
         alpha, alpha_rate = self._virtual_velocity(q, dq, jacobian, (velocity, acceleration), (ratio, ratio_rate))
         self.velocity_error = dq - alpha
         parts = (q, alpha_rate) if self.reduced_input else (q, dq, alpha, alpha_rate)
@@ -146,7 +143,7 @@ class GlobalAdaptiveControl:
                 self.network.adapt(self.share * self.velocity_error)
         if self.robust is not None and self.share < 1.0:
             torque = torque - (1.0 - self.share) * self.robust(self.velocity_error)
-        return torque, self.velocity_gain
+        return Command(torque, self.velocity_gain)
 
     def _virtual_velocity(
         self, q: Array, dq: Array, jacobian: Array, reference: tuple[Array, Array], ratios: tuple[float, float]
@@ -158,7 +155,7 @@ class GlobalAdaptiveControl:
         u = velocity - feedback * self.error
         error_rate = jacobian @ dq - velocity
         u_rate = acceleration - feedback * error_rate - (2.0 * ratio * ratio_rate / decay) * self.error
-        jacobian_rate = (self.model.jacobian(q + 1e-7 * dq) - jacobian) * 1e7
+        jacobian_rate = (self.model.jacobian(q + 1e-7 * dq)[: len(jacobian)] - jacobian) * 1e7
         inverse = _right_inverse(jacobian)
         alpha = inverse @ u
         u_rate -= jacobian_rate @ alpha

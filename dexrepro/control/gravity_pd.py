@@ -3,41 +3,43 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
-
-
-class GravityModel(Protocol):
-    def gravity(self, position: Array) -> Array: ...
+from dexrepro.arrays import Array
+from dexrepro.control.contract import Command, Kind, Measured, NominalModel
+from dexrepro.control.motion import Motion
 
 
 class GravityPD:
     """tau = k_p e + k_d e' + G(q_d) - tau_e, e = q_d - q.
 
     stiffness k_p [N m/rad] and damping k_d [N m s/rad]: numbers or one a joint. torque_limit [N m].
-    After a call: ``error`` e [rad], ``velocity_error`` e' [rad/s].
     """
 
+    kind: ClassVar[Kind] = "joint"
+    needs = ("model",)
+
     def __init__(
-        self, model: GravityModel, *, stiffness: ArrayLike, damping: ArrayLike, torque_limit: float = math.inf
+        self, model: NominalModel, *, stiffness: ArrayLike, damping: ArrayLike, torque_limit: float = math.inf
     ) -> None:
         self.model, self.torque_limit = model, torque_limit
         self.stiffness, self.damping = np.asarray(stiffness, dtype=float), np.asarray(damping, dtype=float)
-        self.reset()
+        self.velocity_error = np.zeros(0)
 
-    def reset(self) -> None:
-        """Nothing is remembered but the last errors."""
-        self.error = self.velocity_error = np.zeros(0)
+    def reset(self, measured: Measured[Array]) -> None:
+        """Nothing is remembered but the last error."""
 
-    def __call__(
-        self, q: Array, dq: Array, desired: tuple[Array, Array, Array], contact_torque: ArrayLike = 0.0
-    ) -> Array:
-        """Joint torque (n,) [N m]; arguments as for :class:`dexrepro.control.bounded_neural.BoundedNeuralTracking`."""
+    def diagnostics(self) -> Mapping[str, Array]:
+        """e' (n,) [rad/s] of the last call."""
+        return {"velocity_error": self.velocity_error}
+
+    def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
+        """Torque (n,) [N m]; tau_e is the measured external torque."""
         q_d, dq_d, _ = desired
-        self.error, self.velocity_error = q_d - q, dq_d - dq
-        torque = self.stiffness * self.error + self.damping * self.velocity_error + self.model.gravity(q_d)
-        return np.clip(torque - np.asarray(contact_torque), -self.torque_limit, self.torque_limit)
+        error, self.velocity_error = q_d - measured.position, dq_d - measured.velocity
+        torque = self.stiffness * error + self.damping * self.velocity_error + self.model.gravity(q_d)
+        return Command(np.clip(torque - measured.force, -self.torque_limit, self.torque_limit))

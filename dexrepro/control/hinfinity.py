@@ -3,25 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_continuous_are
 
-from dexrepro.control.task_space import ArmState, Motion
-
-Array = NDArray[np.float64]
-
-
-class NominalModel(Protocol):
-    """What the law knows of the arm: M(q), C(q, dq) dq + G(q) and J(q), whose first d rows are the task's."""
-
-    def mass_matrix(self, position: Array) -> Array: ...
-
-    def bias(self, position: Array, velocity: Array) -> Array: ...
-
-    def jacobian(self, position: Array) -> Array: ...
+from dexrepro.arrays import Array
+from dexrepro.control.contract import Command, Kind, Measured, NominalModel
+from dexrepro.control.motion import Motion
 
 
 def integrator_chain(order: int) -> tuple[Array, Array]:
@@ -50,25 +39,30 @@ class HInfinityTracking:
     [e, e'] or [integral of e, e, e'] with e = x - x_d, the same for each axis; dt: control period [s].
     """
 
+    kind: ClassVar[Kind] = "end_point"
+    needs = ("model",)
+
     def __init__(self, model: NominalModel, gain: Sequence[float], dt: float) -> None:
         self.model, self.gain, self.dt = model, [float(value) for value in gain], dt
         self.integral: Array | float = 0.0
 
-    def reset(self) -> None:
+    def reset(self, measured: Measured[Array]) -> None:
+        """Empty the integral."""
         self.integral = 0.0
 
-    def __call__(self, arm: ArmState, reference: Motion, force: Array) -> Array:
-        """Force at the end effector [N]; the measured contact force is not used."""
-        error = arm.position - reference.position
-        command = -self.gain[-1] * (arm.velocity - reference.velocity) - self.gain[-2] * error
+    def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
+        """Force at the end point (d,) [N]; the measured contact force is not used."""
+        _, position, velocity, _, q, dq = measured
+        error = position - desired.position
+        command = -self.gain[-1] * (velocity - desired.velocity) - self.gain[-2] * error
         if len(self.gain) == 3:
             self.integral = self.integral + self.dt * error
             command = command - self.gain[0] * self.integral
-        jacobian, drift = self._kinematics(arm.joint_position, arm.joint_velocity, len(error))
-        acceleration = np.linalg.solve(jacobian, reference.acceleration + command - drift)
-        torque = self.model.mass_matrix(arm.joint_position) @ acceleration
-        torque = torque + self.model.bias(arm.joint_position, arm.joint_velocity)
-        return np.linalg.solve(jacobian.T, torque)
+        jacobian, drift = self._kinematics(q, dq, len(error))
+        acceleration = np.linalg.solve(jacobian, desired.acceleration + command - drift)
+        torque = self.model.mass_matrix(q) @ acceleration + self.model.bias(q, dq)
+        force: Array = np.linalg.solve(jacobian.T, torque).astype(float, copy=False)
+        return Command(force=force)
 
     def _kinematics(self, position: Array, velocity: Array, axes: int) -> tuple[Array, Array]:
         """J and J' dq of the task's axes, the latter by a central difference along the motion."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dexrepro.arrays import Real
 
 
 class HoldingLineRegulation:
@@ -12,17 +12,18 @@ class HoldingLineRegulation:
     the length L it closes a lateral offset with the time constant L dt / (gain f).
 
     gain: k_y [m/N per sample]; 0 switches the regulation off.
-    sign: -1 as printed; +1 is kept to show what the opposite reading does.
+    printed: False takes the opposite sign, to show what that reading does.
     """
 
-    def __init__(self, *, gain: Any, sign: float = -1.0) -> None:
-        self.gain, self.sign = gain, sign
+    def __init__(self, *, gain: Real, printed: bool = True) -> None:
+        self.gain, self._sign = gain, (-1.0 if printed else 1.0)
         self.reset()
 
     def reset(self) -> None:
-        self.displacement: Any = 0.0
+        """Back to no displacement."""
+        self.displacement: Real = 0.0
 
-    def __call__(self, force: Any) -> Any:
+    def __call__(self, force: Real) -> Real:
         """Lateral displacement [m] after one more sample of the lateral force [N]; floats, or arrays of one shape."""
-        self.displacement = self.displacement + self.sign * self.gain * force
+        self.displacement = self.displacement + self._sign * self.gain * force
         return self.displacement

@@ -1,17 +1,28 @@
 """References along the holding line from an estimate of the partner's movement, with and without an impedance lead.
 
-The holding laws (here, in ``force_control`` and in ``passive_impedance``) share one signature: ``reset(position)`` with
-the arm's position along the line [m], then ``law(position, force)`` once a control period with the arm's own position
-x_1 [m] and the contact force f_x on it [N, positive in compression]; the result is the reference x_1,r [m].
+They are told the arm's own position x_1 [m] along the line and the contact force f_x on it [N, positive in
+compression], and return the reference x_1,r [m].
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import ClassVar, TypedDict, Unpack
 
+from dexrepro.arrays import Real
+from dexrepro.control.contract import HoldingLaw, Kind, Measured, report
 from dexrepro.control.movement_estimation import MovementEstimation
+
+
+class Shared(TypedDict):
+    """What both references take."""
+
+    estimation: MovementEstimation | KnownMovement
+    desired_force: Real
+    smoothing_rate: float
+    smoothing_power: float
+    dt: float
 
 
 class NonImpedanceReference:
@@ -22,11 +33,14 @@ class NonImpedanceReference:
         position at ``reset`` (the origin of the arm's own frame in the book).
     """
 
+    kind: ClassVar[Kind] = "holding"
+    needs = ("estimation",)
+
     def __init__(
         self,
         *,
         estimation: MovementEstimation | KnownMovement,
-        desired_force: Any,
+        desired_force: Real,
         smoothing_rate: float,
         smoothing_power: float,
         dt: float,
@@ -34,18 +48,25 @@ class NonImpedanceReference:
         self.estimation, self.desired_force, self.dt = estimation, desired_force, dt
         self.smoothing_rate, self.smoothing_power = smoothing_rate, smoothing_power
 
-    def reset(self, position: Any) -> None:
+    def reset(self, measured: Measured[Real]) -> None:
+        """Start the estimation anew and fade in from here."""
         self.estimation.reset()
-        self._start, self._sample = position, 0
+        self._start, self._sample = measured.position, 0
 
-    def __call__(self, position: Any, force: Any) -> Any:
-        self.estimation(position, force)
+    def diagnostics(self) -> Mapping[str, Real]:
+        """The partner's rest position [m], its velocity [m/s] and the object's stiffness [N/m] as believed."""
+        it = self.estimation
+        return {"rest_position": it.position, "stiffness": it.stiffness, "rest_velocity": it.velocity}
+
+    def __call__(self, measured: Measured[Real]) -> Real:
+        """Reference [m]."""
+        self.estimation(measured.position, measured.force)
         time = self._sample * self.dt
         self._sample += 1
         fade = -math.expm1(-self.smoothing_rate * time**self.smoothing_power)
         return self._start + fade * (self._target() - self._start)
 
-    def _target(self) -> Any:
+    def _target(self) -> Real:
         estimate = self.estimation
         return estimate.position - self.desired_force / estimate.stiffness
 
@@ -56,11 +77,11 @@ class ImpedanceReference(NonImpedanceReference):
     mass, damping, stiffness: m [kg], b [N s/m], k [N/m] of the target impedance, Eq. (2.25).
     """
 
-    def __init__(self, *, mass: Any, damping: Any, stiffness: Any, **shared: Any) -> None:
+    def __init__(self, *, mass: Real, damping: Real, stiffness: Real, **shared: Unpack[Shared]) -> None:
         super().__init__(**shared)
         self.mass, self.damping, self.stiffness = mass, damping, stiffness
 
-    def _target(self) -> Any:
+    def _target(self) -> Real:
         estimate = self.estimation
         lead = (self.damping * estimate.velocity + self.mass * estimate.acceleration) / self.stiffness
         return super()._target() + lead
@@ -72,18 +93,26 @@ class FadeIn:
     smoothing_rate, smoothing_power: mu, eta. dt: control period [s].
     """
 
-    def __init__(self, *, law: Any, smoothing_rate: float, smoothing_power: float, dt: float) -> None:
+    kind: ClassVar[Kind] = "holding"
+
+    def __init__(self, *, law: HoldingLaw, smoothing_rate: float, smoothing_power: float, dt: float) -> None:
         self.law, self.dt = law, dt
         self.smoothing_rate, self.smoothing_power = smoothing_rate, smoothing_power
 
-    def reset(self, position: Any) -> None:
-        self.law.reset(position)
-        self._start, self._sample = position, 0
+    def reset(self, measured: Measured[Real]) -> None:
+        """Start the law and fade in from here."""
+        self.law.reset(measured)
+        self._start, self._sample = measured.position, 0
 
-    def __call__(self, position: Any, force: Any) -> Any:
+    def diagnostics(self) -> Mapping[str, Real]:
+        """Those of the law."""
+        return report(self.law)
+
+    def __call__(self, measured: Measured[Real]) -> Real:
+        """Reference [m]."""
         fade = -math.expm1(-self.smoothing_rate * (self._sample * self.dt) ** self.smoothing_power)
         self._sample += 1
-        return self._start + fade * (self.law(position, force) - self._start)
+        return self._start + fade * (self.law(measured) - self._start)
 
 
 class KnownMovement:
@@ -98,9 +127,10 @@ class KnownMovement:
         self.position = self.velocity = self.acceleration = 0.0
 
     def reset(self) -> None:
+        """Take the movement as it is now, without acceleration."""
         self.position, self.velocity = self._movement()
 
-    def __call__(self, position: Any, force: Any) -> None:
+    def __call__(self, position: Real, force: Real) -> None:
         before = self.velocity
         self.position, self.velocity = self._movement()
         self.acceleration = (self.velocity - before) / self._dt

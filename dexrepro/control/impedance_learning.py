@@ -4,37 +4,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
+from dexrepro.control.contract import Measured
 from dexrepro.control.interaction_optimum import InteractionCost
+from dexrepro.control.motion import Motion
 from dexrepro.control.policy_iteration import Learned, Windows, policy_iteration
-
-Array = NDArray[np.float64]
 
 WAITING, EXPLORING, SOLVING, TRANSFERRING, DONE = range(5)
 
 
-class Reference(NamedTuple):
-    """Position [m], velocity [m/s] and acceleration [m/s^2] that the inner loop tracks along one axis."""
-
-    position: float
-    velocity: float
-    acceleration: float
-
-
 class Gain(Protocol):
-    """A gain K(t) of tau_e = -K [x, s] and a force added to it, updated once a control period during contact."""
+    """A gain K(t) of tau_e = -K [x, s] and a force added to it, updated once a control period during contact.
+
+    learned: what it found out, None where it has learned nothing (yet).
+    """
 
     gain: Sequence[float]
     exploration: float
     phase: int
+    learned: Learned | None
 
-    def reset(self) -> None: ...
+    def reset(self) -> None:
+        """Back to the gain before contact."""
 
-    def update(self, indentation: float, reference: float, force: float) -> None: ...
+    def update(self, indentation: float, reference: float, force: float) -> None:
+        """Advance one control period: indentation x [m], reference s, force tau_e of the object on the robot [N]."""
 
 
 def soft_transfer(initial: Array, optimal: Array, progress: Array | float) -> Array:
@@ -47,14 +45,14 @@ class ConstantGain:
     """A gain given in advance: the initial one, or one computed from a model of the object."""
 
     def __init__(self, gain: Sequence[float]) -> None:
-        self.gain = [float(entry) for entry in gain]
-        self.exploration, self.phase = 0.0, WAITING
+        self.gain: Sequence[float] = [float(entry) for entry in gain]
+        self.exploration, self.phase, self.learned = 0.0, WAITING, None
 
     def reset(self) -> None:
-        pass
+        """The gain stays."""
 
     def update(self, indentation: float, reference: float, force: float) -> None:
-        pass
+        """The gain stays."""
 
 
 def exploration_windows(samples: Array, dt: float, length: int, exosystem: float | None, start: float = 1.0) -> Windows:
@@ -102,6 +100,7 @@ class LearnedGain:
         self.reset()
 
     def reset(self) -> None:
+        """Back to K_0, with no data."""
         self.gain: Sequence[float] = self.initial.tolist()
         self.exploration, self.phase = 0.0, WAITING
         self.learned: Learned | None = None
@@ -119,7 +118,7 @@ class LearnedGain:
         return np.array(self._samples).reshape(-1, 3)
 
     def update(self, indentation: float, reference: float, force: float) -> None:
-        """Advance one control period: indentation x [m], reference s, force tau_e of the object on the robot [N]."""
+        """One control period of the algorithm."""
         elapsed = self._steps * self.dt
         self._steps += 1
         if self.phase == WAITING and elapsed >= self.wait:
@@ -160,7 +159,8 @@ class IntegratingReference:
     def __init__(self, mobility: float, bandwidth: float, dt: float) -> None:
         self.mobility, self.bandwidth, self.dt = mobility, bandwidth, dt
 
-    def acceleration(self, state: Reference, force: float, desired: float, target: float) -> float:
+    def acceleration(self, state: Motion[float], force: float, desired: float, target: float) -> float:
+        """Acceleration [m/s^2] of x_0 for tau_e = ``force`` and f_d = ``desired`` [N]; ``target`` is not used."""
         return self.bandwidth * (self.mobility * (force - desired) - state.velocity)
 
 
@@ -170,7 +170,8 @@ class StaticReference:
     def __init__(self, rate: float, dt: float) -> None:
         self.rate, self.dt = rate, dt
 
-    def acceleration(self, state: Reference, force: float, desired: float, target: float) -> float:
+    def acceleration(self, state: Motion[float], force: float, desired: float, target: float) -> float:
+        """Acceleration [m/s^2] of x_0 towards ``target`` [m], where the measured force would balance."""
         return self.rate**2 * (target - state.position) - 2.0 * self.rate * state.velocity
 
 
@@ -180,7 +181,7 @@ class InteractionLaw:
     The surface x_ob is where the force first exceeds ``contact_force`` [N]. Before contact x_0 = x_d; once x_d has left
     the object, x_0 returns to it at the rate ``recovery`` [1/s]. side: +1 for an object at positions above its
     surface, -1 for one below; output: N of the cost; origin: position [m] from which x and x_d count, None for the
-    surface itself; surface_error: error [m] of the surface found; sign: -1 is tau_e = +K [x, s].
+    surface itself; surface_error: error [m] of the surface found; printed: tau_e = +K [x, s].
     """
 
     def __init__(
@@ -193,21 +194,23 @@ class InteractionLaw:
         recovery: float,
         origin: float | None = None,
         surface_error: float = 0.0,
-        sign: float = 1.0,
+        printed: bool = False,
     ) -> None:
         self.gain, self.reference, self.output, self.side = gain, reference, output, side
         self.contact_force, self.recovery = contact_force, recovery
-        self.origin, self.surface_error, self.sign = origin, surface_error, sign
+        self.origin, self.surface_error, self._sign = origin, surface_error, -1.0 if printed else 1.0
         self.reset()
 
     def reset(self) -> None:
+        """Forget the surface and what the gain has learned."""
         self.gain.reset()
         self.surface: float | None = None
         self.desired_force = 0.0
-        self.state = Reference(0.0, 0.0, 0.0)
+        self.state = Motion(0.0, 0.0, 0.0)
 
-    def __call__(self, desired: Reference, position: float, force: float) -> Reference:
-        """Virtual reference for the desired motion, the measured position [m] and force on the robot [N]."""
+    def __call__(self, measured: Measured[float], desired: Motion[float]) -> Motion[float]:
+        """Virtual reference for the desired motion and what is measured along the axis; the force is on the robot."""
+        _, position, _, force, *_ = measured
         dt = self.reference.dt
         if self.surface is None and abs(force) > self.contact_force:
             self.surface, self.state = position + self.surface_error, desired
@@ -220,15 +223,15 @@ class InteractionLaw:
             command = desired.velocity + self.recovery * (desired.position - self.state.position)
             acceleration = 10.0 * self.recovery * (command - self.state.velocity)
         velocity = self.state.velocity + dt * acceleration
-        self.state = Reference(self.state.position + dt * velocity, velocity, acceleration)
+        self.state = Motion(self.state.position + dt * velocity, velocity, acceleration)
         return self.state
 
-    def _interact(self, desired: Reference, position: float, force: float) -> float:
+    def _interact(self, desired: Motion[float], position: float, force: float) -> float:
         origin = self.surface if self.origin is None else self.origin
         assert origin is not None
         indentation, target = position - origin, (desired.position - origin) / self.output
         self.gain.update(indentation, target, force)
-        gain_x, gain_s = self.gain.gain[0] * self.sign, self.gain.gain[1] * self.sign
+        gain_x, gain_s = self.gain.gain[0] * self._sign, self.gain.gain[1] * self._sign
         noise = self.gain.exploration
         self.desired_force = -gain_x * indentation - gain_s * target + noise
         balance = origin - (force + gain_s * target - noise) / gain_x

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import ClassVar
+
+from dexrepro.arrays import Array, Real
+from dexrepro.control.contract import Command, Kind, Measured
+from dexrepro.control.motion import Motion
 
 
 class JointPD:
-    """Torque K_p (q_d - q) - K_d dq, joint by joint.
+    """Torque K_p (q_d - q) + K_d (dq_d - dq), joint by joint.
 
-    stiffness: K_p [N m/rad], damping: K_d [N m s/rad], one entry a joint. A reference velocity is used only where
-    one is given; the book's simulations give none.
+    stiffness: K_p [N m/rad], damping: K_d [N m s/rad], one entry a joint.
     """
 
-    def __init__(self, *, stiffness: Any, damping: Any) -> None:
+    kind: ClassVar[Kind] = "joint"
+
+    def __init__(self, *, stiffness: Real, damping: Real) -> None:
         self.stiffness, self.damping = stiffness, damping
 
-    def reset(self) -> None:
+    def reset(self, measured: Measured[Array]) -> None:
         """Nothing is remembered."""
 
-    def __call__(self, reference: Any, position: Any, velocity: Any, reference_velocity: Any = None) -> Any:
-        """Torque [N m] for joint angles [rad] and velocities [rad/s], one array of joints each."""
-        error = velocity if reference_velocity is None else velocity - reference_velocity
-        return self.stiffness * (reference - position) - self.damping * error
+    def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
+        """Torque (n,) [N m]."""
+        error, rate = desired.position - measured.position, measured.velocity - desired.velocity
+        return Command(self.stiffness * error - self.damping * rate)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import ClassVar
+
+from dexrepro.arrays import Real
+from dexrepro.control.contract import Kind, Measured
 
 
 class PassiveImpedance:
@@ -12,14 +15,19 @@ class PassiveImpedance:
     ``velocity`` is the reference's [m/s]. Behind a partner of constant velocity v it keeps the force error b_pi v.
     """
 
-    def __init__(self, *, mass: Any, damping: Any, desired_force: Any, dt: float) -> None:
+    kind: ClassVar[Kind] = "holding"
+
+    def __init__(self, *, mass: Real, damping: Real, desired_force: Real, dt: float) -> None:
         self.mass, self.damping, self.desired_force, self.dt = mass, damping, desired_force, dt
 
-    def reset(self, position: Any) -> None:
-        self._position, self.velocity = position, 0.0
+    def reset(self, measured: Measured[Real]) -> None:
+        """Start the reference at rest where the arm is."""
+        self._position = measured.position
+        self.velocity: Real = 0.0
 
-    def __call__(self, position: Any, force: Any) -> Any:
-        error, velocity = force - self.desired_force, self.velocity
+    def __call__(self, measured: Measured[Real]) -> Real:
+        """Reference [m]."""
+        error, velocity = measured.force - self.desired_force, self.velocity
         middle = velocity + 0.5 * self.dt * (error - self.damping * velocity) / self.mass
         self._position = self._position + self.dt * middle
         self.velocity = velocity + self.dt * (error - self.damping * middle) / self.mass

@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from dexrepro.arrays import Row
+from dexrepro.control.contract import Command, Kind, Measured
+from dexrepro.control.motion import Motion
+
+if TYPE_CHECKING:
+    from dexrepro.robots.planar import PlanarChain
 
 
 class TargetImpedance:
@@ -16,10 +23,13 @@ class TargetImpedance:
     across: natural frequency across the line [rad/s]. null_damping: decay rate of the redundant motion [1/s].
     """
 
+    kind: ClassVar[Kind] = "end_point"
+    needs = ("model",)
+
     def __init__(
         self,
         *,
-        model: Any,
+        model: PlanarChain[float],
         mass: float,
         damping: float,
         stiffness: float,
@@ -31,11 +41,13 @@ class TargetImpedance:
         self.mass, self.damping, self.stiffness = mass, damping, stiffness
         self.across, self.null_damping = across, null_damping
 
-    def __call__(
-        self, q: list[float], dq: list[float], force: tuple[float, float], target: tuple[float, float]
-    ) -> list[float]:
-        """Torque [N m] for joint angles and rates [rad, rad/s], tip force [N] and reference (x_r, y_d) [m]."""
-        model = self.model
+    def reset(self, measured: Measured[Row[float]]) -> None:
+        """Nothing is remembered."""
+
+    def __call__(self, measured: Measured[Row[float]], desired: Motion[Row[float]]) -> Command:
+        """Torque [N m] from angles, rates and the force at the tip, for a reference position (x_r, y_d) [m] at rest."""
+        _, _, _, force, q, dq = measured
+        model, target = self.model, desired.position
         x, y = model.forward(q)
         (x1, x2, x3), (y1, y2, y3) = model.jacobian(q)
         vx, vy = x1 * dq[0] + x2 * dq[1] + x3 * dq[2], y1 * dq[0] + y2 * dq[1] + y3 * dq[2]
@@ -49,4 +61,5 @@ class TargetImpedance:
         determinant = xx * yy - xy * xy
         u, v = (yy * ax - xy * ay) / determinant, (xx * ay - xy * ax) / determinant
         rates = (x1 * u + y1 * v - decay * dq[0], x2 * u + y2 * v - decay * dq[1], x3 * u + y3 * v - decay * dq[2])
-        return [t - c for t, c in zip(model.torque(q, dq, rates), model.tip_torque(q, force))]
+        torque: Any = [t - c for t, c in zip(model.torque(q, dq, rates), model.tip_torque(q, (force[0], force[1])))]
+        return Command(torque)

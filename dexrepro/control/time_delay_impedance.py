@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal, Protocol
+from collections.abc import Callable, Collection, Mapping
+from typing import ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
-
-
-class NominalModel(Protocol):
-    def mass_matrix(self, position: Array) -> Array: ...
-    def gravity(self, position: Array) -> Array: ...
-    def bias(self, position: Array, velocity: Array) -> Array: ...
+from dexrepro.arrays import Array
+from dexrepro.control.contract import Command, Kind, Measured, NominalModel, coriolis, printed_forms
+from dexrepro.control.motion import Motion
 
 
 class Impedance(Protocol):
@@ -61,8 +58,13 @@ class RobustImpedance:
 
 
 #: Signs of the delayed estimate and of K_imp r in the torque. The print subtracts its tau_hat in (7.38), and the two
-#: lines of (7.39) differ in the sign of the estimate; only "corrected" gives the closed loop M r' + (C + K) r = small.
-SIGNS = {"corrected": (1.0, 1.0), "printed": (1.0, -1.0), "printed_first_line": (-1.0, -1.0)}
+#: lines of (7.39) differ in the sign of the estimate; only the corrected ones give M r' + (C + K) r = small.
+SIGNS = {"second_line": (1.0, -1.0), "first_line": (-1.0, -1.0)}
+
+
+def no_stiffness(time: float) -> float:
+    """X^stf of a relaxed muscle."""
+    return 0.0
 
 
 class TimeDelayImpedance:
@@ -70,10 +72,14 @@ class TimeDelayImpedance:
 
     e = q_d - q, r = e' + k e, tau_hat = (tau - M q'' - C q' - G)(t - L) + K_imp r. M, C, G come from a nominal
     ``model``; ``dt`` [s] is the control period and the delay L; ``error_slope`` k [1/s]; ``impedance`` gives K_imp from
-    the muscle stiffness and r. ``estimation`` switches the delayed term. ``velocity_filter`` is the coefficient (0..1,
+    the muscle ``stiffness`` X^stf at a time [s] and r. ``printed`` takes the signs of the "first_line" or
+    "second_line" of Eq. (7.39). ``estimation`` switches the delayed term. ``velocity_filter`` is the coefficient (0..1,
     1: none) of the first-order low pass that the measured velocity went through: the delayed torque has to pass the
     same filter, or the loop is unstable. ``torque_limit`` [N m] clips the torque, also the one the next estimate sees.
     """
+
+    kind: ClassVar[Kind] = "joint"
+    needs = ("model", "stiffness")
 
     def __init__(
         self,
@@ -81,70 +87,81 @@ class TimeDelayImpedance:
         dt: float,
         error_slope: float,
         impedance: Impedance,
-        sign: Literal["corrected", "printed", "printed_first_line"] = "corrected",
+        stiffness: Callable[[float], float] = no_stiffness,
+        printed: Collection[str] = (),
         estimation: bool = True,
         velocity_filter: float = 1.0,
         torque_limit: float = np.inf,
     ) -> None:
         self.model, self.dt, self.error_slope, self.impedance = model, dt, error_slope, impedance
-        self.estimate_sign, self.impedance_sign = SIGNS[sign]
-        self.estimation = estimation
+        (form,) = printed_forms(printed, SIGNS) or (None,)
+        self._estimate_sign, self._impedance_sign = (1.0, 1.0) if form is None else SIGNS[form]
+        self.stiffness, self.estimation = stiffness, estimation
         self.velocity_filter, self.torque_limit = velocity_filter, torque_limit
-        self.reset()
-
-    def reset(self) -> None:
         self._previous: tuple[Array, Array, Array, Array] | None = None
         self.error = np.zeros(0)
 
-    def __call__(
-        self, position: Array, velocity: Array, desired: tuple[Array, Array, Array], stiffness: float = 0.0
-    ) -> Array:
-        """Joint torque [N m] for measured position [rad] and velocity [rad/s].
+    def reset(self, measured: Measured[Array]) -> None:
+        """Forget the torque of the last period."""
+        self._previous = None
 
-        ``desired`` holds position, velocity and acceleration of the reference, ``stiffness`` is the muscle's X^stf.
-        """
-        q_d, dq_d, ddq_d = desired
+    def diagnostics(self) -> Mapping[str, Array]:
+        """r (n,) [rad/s] of the last call."""
+        return {"filtered_error": self.error}
+
+    def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
+        """Torque (n,) [N m]."""
+        (time, position, velocity, *_), (q_d, dq_d, ddq_d) = measured, desired
         e, de = q_d - position, dq_d - velocity
         self.error = r = de + self.error_slope * e
         mass = self.model.mass_matrix(position)
         gravity = self.model.gravity(position)
         bias = self.model.bias(position, velocity)
         target = dq_d + self.error_slope * e
-        # Coriolis matrix times another vector from inverse dynamics alone: C(q, a) b = [h(a + b) - h(a - b)] / 4.
-        plus, minus = self.model.bias(position, velocity + target), self.model.bias(position, velocity - target)
-        torque = mass @ (ddq_d + self.error_slope * de) + (plus - minus) / 4 + gravity
-        torque += self.impedance_sign * self.impedance(stiffness, r) * r
+        torque = mass @ (ddq_d + self.error_slope * de) + coriolis(self.model, position, velocity, target) + gravity
+        torque += self._impedance_sign * self.impedance(self.stiffness(time), r) * r
         if self._previous and self.estimation:
             delayed, old_velocity, old_mass, old_bias = self._previous
             acceleration = (velocity - old_velocity) / self.dt
-            torque += self.estimate_sign * (delayed - old_mass @ acceleration - old_bias)
+            torque += self._estimate_sign * (delayed - old_mass @ acceleration - old_bias)
         torque = np.clip(torque, -self.torque_limit, self.torque_limit)
         delayed = self._previous[0] if self._previous else torque
         delayed = delayed + self.velocity_filter * (torque - delayed)
         self._previous = (delayed, velocity, mass, bias)
-        return torque
+        return Command(torque)
 
 
 class GravityImpedance:
-    """tau = G(q) + K_imp r: the plain rival, with the same signature, error r and nominal ``model``."""
+    """tau = G(q) + K_imp r: the plain rival, with the same error r, impedance, stiffness and nominal ``model``."""
+
+    kind: ClassVar[Kind] = "joint"
+    needs = ("model", "stiffness")
 
     def __init__(
-        self, model: NominalModel, dt: float, error_slope: float, impedance: Impedance, torque_limit: float = np.inf
+        self,
+        model: NominalModel,
+        error_slope: float,
+        impedance: Impedance,
+        stiffness: Callable[[float], float] = no_stiffness,
+        torque_limit: float = np.inf,
     ) -> None:
-        self.model, self.dt, self.error_slope, self.impedance = model, dt, error_slope, impedance
-        self.torque_limit = torque_limit
-        self.reset()
-
-    def reset(self) -> None:
+        self.model, self.error_slope, self.impedance = model, error_slope, impedance
+        self.stiffness, self.torque_limit = stiffness, torque_limit
         self.error = np.zeros(0)
 
-    def __call__(
-        self, position: Array, velocity: Array, desired: tuple[Array, Array, Array], stiffness: float = 0.0
-    ) -> Array:
-        """Joint torque [N m], as for :class:`TimeDelayImpedance`."""
-        self.error = r = desired[1] - velocity + self.error_slope * (desired[0] - position)
-        torque = self.model.gravity(position) + self.impedance(stiffness, r) * r
-        return np.clip(torque, -self.torque_limit, self.torque_limit)
+    def reset(self, measured: Measured[Array]) -> None:
+        """Nothing is remembered but the last error."""
+
+    def diagnostics(self) -> Mapping[str, Array]:
+        """r (n,) [rad/s] of the last call."""
+        return {"filtered_error": self.error}
+
+    def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
+        """Torque (n,) [N m]."""
+        q = measured.position
+        self.error = r = desired.velocity - measured.velocity + self.error_slope * (desired.position - q)
+        torque = self.model.gravity(q) + self.impedance(self.stiffness(measured.time), r) * r
+        return Command(np.clip(torque, -self.torque_limit, self.torque_limit))
 
 
 def sampled_spectral_radius(mass: ArrayLike, nominal_mass: ArrayLike, impedance: ArrayLike, dt: float) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -36,6 +38,21 @@ class AdaptiveNetwork:
         if weights is not None:
             rows = np.asarray(weights, dtype=float)
             self._weights[:, : len(rows)] = rows.T
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes the basis has now."""
+        return self.basis.nodes
+
+    def diagnostics(self) -> Mapping[str, float]:
+        """Nodes, |G|^2 and largest feature at the last input."""
+        features = self.features
+        return {"nodes": self.nodes, "feature_energy": features @ features, "activation": features.max(initial=0.0)}
+
+    def forget(self) -> None:
+        """Start anew: weights zero, and the nodes the basis had at first."""
+        self.reset()
+        self.basis.reset()
 
     def output(self, z: ArrayLike, grow: bool = False) -> Array:
         """Y(z), shape (outputs,); ``grow`` lets the basis add a node for ``z`` first."""

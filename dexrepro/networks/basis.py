@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,12 +16,29 @@ from dexrepro.arrays import Array
 class Basis(ABC):
     """A feature vector G(z) of an input z.
 
-    dimension: length of the input; capacity: largest number of features there can ever be.
+    dimension: length of the input; capacity: largest number of features there can ever be; grows: whether nodes are
+    added; centres: of the present nodes, (nodes, dimension); features_per_node: how many features each gives.
     The array that a call returns is a buffer, overwritten by the next call.
     """
 
     dimension: int
     capacity: int
+    grows: ClassVar[bool] = False
+    features_per_node = 1
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes there are now."""
+        return self.capacity
+
+    def reset(self, centres: ArrayLike | None = None) -> None:
+        """Start again from ``centres`` (n, dimension) or from none; a basis that does not grow stays as it is."""
+        return
+
+    @property
+    @abstractmethod
+    def centres(self) -> Array:
+        """Centres of the present nodes, (nodes, dimension)."""
 
     @abstractmethod
     def __call__(self, z: ArrayLike, grow: bool = False) -> Array:
@@ -34,14 +52,19 @@ class Gaussians(Basis):
     """
 
     def __init__(self, centres: ArrayLike, width: float, normalised: bool = False) -> None:
-        self.centres = np.array(centres, dtype=float)
+        self._centres = np.array(centres, dtype=float)
         self.width, self.normalised = float(width), normalised
-        self.capacity, self.dimension = self.centres.shape
-        self._difference = np.empty_like(self.centres)
+        self.capacity, self.dimension = self._centres.shape
+        self._difference = np.empty_like(self._centres)
         self._features = np.empty(self.capacity)
 
+    @property
+    def centres(self) -> Array:
+        """Centres, (nodes, dimension)."""
+        return self._centres
+
     def __call__(self, z: ArrayLike, grow: bool = False) -> Array:
-        squared_distances(self.centres, z, self._difference, self._features)
+        squared_distances(self._centres, z, self._difference, self._features)
         self._features *= -1.0 / self.width**2
         np.exp(self._features, out=self._features)
         return _normalise(self._features) if self.normalised else self._features

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -20,6 +22,8 @@ class GrowingGaussians(Basis):
     period). enhanced: beside s_i each node has the features cos(s_i) and sin(s_i), Eq. (4.8); features are ordered
     node by node, so that growth appends. max_nodes: memory is reserved for as many; once full, no node is added.
     """
+
+    grows: ClassVar[bool] = True
 
     def __init__(
         self,
@@ -50,43 +54,48 @@ class GrowingGaussians(Basis):
         known = np.empty((0, self.dimension)) if centres is None else np.asarray(centres, dtype=float)
         if len(known) > self.max_nodes:
             raise ValueError(f"{len(known)} centres do not fit: the network holds at most {self.max_nodes} nodes")
-        self.nodes = len(known)
-        self._centres[: self.nodes] = known
+        self._count = len(known)
+        self._centres[: self._count] = known
         self._calls = 0
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes there are now."""
+        return self._count
 
     @property
     def centres(self) -> Array:
         """Centres of the present nodes, shape (nodes, dimension); a view."""
-        return self._centres[: self.nodes]
+        return self._centres[: self._count]
 
     def __call__(self, z: ArrayLike, grow: bool = False) -> Array:
         """Features at ``z``, shape (nodes features_per_node,)."""
-        if self.nodes == 0:
+        if self._count == 0:
             self._append(np.asarray(z, dtype=float))
-        squared = squared_distances(self.centres, z, self._difference[: self.nodes], self._squared[: self.nodes])
+        squared = squared_distances(self.centres, z, self._difference[: self._count], self._squared[: self._count])
         if grow:
             if self._calls % self.interval == 0 and self._grow(np.asarray(z, dtype=float), squared):
                 squared = squared_distances(
-                    self.centres, z, self._difference[: self.nodes], self._squared[: self.nodes]
+                    self.centres, z, self._difference[: self._count], self._squared[: self._count]
                 )
             self._calls += 1
-        gaussian = self._gaussian[: self.nodes]
+        gaussian = self._gaussian[: self._count]
         np.multiply(squared, -1.0 / self.width**2, out=gaussian)
         np.exp(gaussian, out=gaussian)
         if not self.enhanced:
             return gaussian
-        features = self._features[: self.nodes]
+        features = self._features[: self._count]
         features[:, 0] = gaussian
         np.cos(gaussian, out=features[:, 1])
         np.sin(gaussian, out=features[:, 2])
         return features.reshape(-1)
 
     def _grow(self, z: Array, squared: Array) -> bool:
-        if self.nodes == self.max_nodes:
+        if self._count == self.max_nodes:
             return False
         if self.neighbours == 1:
             nearest = self._centres[int(squared.argmin())]
-        elif self.nodes <= self.neighbours:
+        elif self._count <= self.neighbours:
             nearest = self.centres.mean(axis=0)
         else:
             nearest = self._centres[np.argpartition(squared, self.neighbours - 1)[: self.neighbours]].mean(axis=0)
@@ -97,5 +106,5 @@ class GrowingGaussians(Basis):
         return True
 
     def _append(self, centre: Array) -> None:
-        self._centres[self.nodes] = centre
-        self.nodes += 1
+        self._centres[self._count] = centre
+        self._count += 1

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from dexrepro.arrays import Array
 from dexrepro.experiment import Recording
 from dexrepro.physics.elements import Element, Ends
-from dexrepro.physics.plant import Command, Controller, NotFinite, NotTorque, RigidBody, SimulatedArm
+from dexrepro.physics.plant import Controller, NotFinite, NotTorque, Reply, RigidBody, SimulatedArm
 
 Probe = Callable[[], ArrayLike]
 GUARD = 1e3  # sum of an arm's joint angles and rates [rad, rad/s] beyond which a run has diverged
@@ -182,7 +182,7 @@ class _Scene:
         for arm in self._arms:
             arm.prepare(period)
         self._driven = [(world.arms[name], controller) for name, controller in controllers.items()]
-        self._commands: dict[str, Command] = {}
+        self._commands: dict[str, Reply] = {}
         self._bodies = list(world.moving.values())
         self._elements = list(world.elements)
         self._forces = [element.bind(world) for element in self._elements]
@@ -216,9 +216,9 @@ class _Scene:
                     answer = self._commands[arm.name]
                     if callable(answer):
                         answer = answer(arm.observe(now, False))
-                    elif type(answer) is not tuple:
+                    elif not isinstance(answer, tuple):
                         continue
-                if type(answer) is tuple:
+                if isinstance(answer, tuple):
                     arm.command(answer[0], answer[1], self._step)
                 else:
                     arm.command(answer, None, self._step)

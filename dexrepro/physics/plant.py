@@ -16,6 +16,7 @@ import pybullet as bullet
 from scipy.spatial.transform import Rotation
 
 from dexrepro.arrays import Array
+from dexrepro.control.contract import Command
 from dexrepro.physics.loading import connect, disconnect, lighter, load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
@@ -125,9 +126,9 @@ class Sense:
 
 
 Torque = Sequence[float] | Array
-Answer = Torque | tuple[Torque, Torque]
-Command = Answer | Callable[[Sense], Answer]
-Controller = Callable[[Sense], Command]
+Answer = Torque | tuple[Torque, Torque] | Command
+Reply = Answer | Callable[[Sense], Answer]
+Controller = Callable[[Sense], Reply]
 """What drives an arm: joint torques, a tuple (torque, damping), or an inner loop; see ``World.run``."""
 
 

@@ -243,8 +243,8 @@ class World:
         """Simulate for a duration [s] and return the recording; a second call goes on from where the first ended.
 
         controllers: by arm name, ``controller(sense) -> command``, called every ``control_period`` [s] (a multiple of
-            the step, by default the step) in the order given. A command is joint torques (n,) [N m], held; a tuple
-            (torque, damping) whose damping, (n,) or (n, n) [N m s/rad], the world applies implicitly at every
+            the step, by default the step) in the order given. A command is joint torques (n,) [N m], held; a Command
+            or tuple (torque, damping) whose damping, (n,) or (n, n) [N m s/rad], the world applies implicitly at every
             physics step; or a callable ``inner(sense) -> torque or tuple`` evaluated at every physics step until the
             next command. A tuple is always (torque, damping): give torques as arrays or lists.
         probes: functions without arguments, evaluated at every recorded sample after the controllers.

@@ -1,52 +1,246 @@
-"""Recorded paths from CSV files: read, checked, and resampled at equal steps."""
+"""Recorded paths from text files of many makes: read, checked, and resampled at equal steps."""
 
 from __future__ import annotations
 
 import csv
 import glob
+import re
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from dexrepro.arrays import Array
+from dexrepro.text import decoded
 
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
-COLUMNS = ("time", "x", "y", "z")
+LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
+TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+SPELT = {"in": "inch", "inches": "inch", "meters": "m", "metres": "m", "sec": "s", "secs": "s", "seconds": "s",
+         "msec": "ms", "µs": "us", "μs": "us", "usec": "us", "nsec": "ns", "nsecs": "ns"}  # fmt: skip
+TIME = {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}
+NO_PLACE = {"orientation", "rotation", "angular", "quaternion", "q", "velocity", "vel", "v", "speed", "acceleration",
+            "acc", "force", "torque", "seq"}  # fmt: skip
+COMMENT = re.compile(r"\s*(#|%|//)[\s#%/]*")
 FEWEST = 8
+LONG = 60.0  # s; a file that lasts longer with steps of a second or more has other stamps than seconds
+SHORT = 0.01  # s; no movement of a hand
+PAUSE = 10.0  # times the usual step; where such pauses take a third of the time, clocks have jumped
 
 
-def read_path(path: str, unit: str = "m", axes: int = 3) -> tuple[Array, Array]:
-    """Time (N,) [s] and position (N, axes) [m] of a CSV file with the columns time, x, y and, for three axes, z.
+@dataclass(frozen=True)
+class Format:
+    """How a file of recorded positions is written.
 
-    unit: of the lengths in the file, m, cm, mm or inch. A first line with the names of the columns may be there or not.
+    unit: of its lengths, m, cm, mm or inch; time_unit: s, ms, us or ns; None: as its header says. duplicates: "drop"
+    keeps the first of several samples of one instant, "refuse" refuses them. encoding: of a file that is neither UTF-8
+    nor UTF-16, such as cp1252.
+    """
+
+    unit: str | None = None
+    time_unit: str | None = None
+    duplicates: str = "refuse"
+    encoding: str | None = None
+
+    def __post_init__(self) -> None:
+        allowed = {"unit": [*LENGTHS], "time_unit": [*TIMES], "duplicates": ["refuse", "drop"]}
+        for key, values in allowed.items():
+            value = getattr(self, key)
+            if value not in values and (value is not None or key == "duplicates"):
+                raise ValueError(f"{key} = {value} is not allowed: it must be one of {', '.join(values)}")
+
+
+def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str = "m") -> tuple[Array, Array]:
+    """Time (N,) [s] from 0 and position (N, axes) [m] of a file with the columns time, x, y and, for three axes, z.
+
+    Columns are parted by commas, semicolons, tabs or blanks; the decimal mark may be a comma where that is clear. A
+    line before the numbers may name the columns, in any order and among others, with their units in brackets. Lines
+    that begin with #, % or // are comments. otherwise: the unit of length where neither header nor ``style`` tells it.
     Raises ValueError with one sentence where the file cannot be used.
     """
-    if unit not in UNITS:
-        raise ValueError(f"unit = {unit} is not allowed: it must be one of {', '.join(UNITS)}")
-    columns = COLUMNS[: axes + 1]
     try:
-        with open(path, newline="", encoding="utf-8-sig") as file:  # spreadsheets begin it with a mark
-            rows = [(reader.line_num, row) for reader in [csv.reader(file)] for row in reader if row]
-    except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"cannot read '{path}': {getattr(error, 'strerror', None) or 'it is no text'}") from None
-    header = tuple(name.strip().lower() for name in rows[0][1]) if rows else ()
-    if header and not _is_number(header[0]):
-        if header != columns:
-            raise ValueError(f"the columns of '{path}' are {', '.join(header)}; they must be {', '.join(columns)}")
-        rows = rows[1:]
-    if len(rows) < FEWEST:
-        raise ValueError(f"'{path}' has {len(rows)} samples; there must be at least {FEWEST}")
-    for line, row in rows:
-        if len(row) != len(columns):
-            raise ValueError(f"line {line} of '{path}' has {len(row)} numbers; it must have {', '.join(columns)}")
-        if not all(map(_is_number, row)):
-            raise ValueError(f"line {line} of '{path}' holds '{','.join(row)}': every entry must be a finite number")
-    data = np.array([row for _, row in rows], dtype=float)
-    if (late := np.flatnonzero(np.diff(data[:, 0]) <= 0)).size:
-        raise ValueError(f"the time of '{path}' does not increase at line {rows[late[0] + 1][0]}")
-    return data[:, 0] - data[0, 0], UNITS[unit] * data[:, 1:]
+        lines = decoded(Path(path).expanduser().read_bytes(), style.encoding).splitlines()
+    except OSError as error:
+        raise ValueError(f"cannot read '{path}': {error.strerror}") from None
+    except ValueError as error:
+        raise ValueError(f"cannot read '{path}': {error}") from None
+    try:
+        table = _Table(lines, ("time", "x", "y", "z")[: axes + 1])
+        length, tick = (table.unit(style, *kind) for kind in (("unit", LENGTHS, 1), ("time_unit", TIMES, 0)))
+        data, numbers = table.data()
+        time, position = TIMES[tick or "s"] * (data[:, 0] - data[0, 0]), LENGTHS[length or otherwise] * data[:, 1:]
+        if style.duplicates == "drop":
+            new = np.concatenate([[True], np.diff(time) != 0])
+            time, position, numbers = time[new], position[new], numbers[new]
+        _check(time, position, numbers, tick)
+    except ValueError as error:
+        raise ValueError(f"'{path}': {error}") from None
+    return time, position
+
+
+class _Table:
+    """Rows of numbers in lines of text, from the columns ``wanted``; what stands before them names columns and units.
+
+    columns: where the wanted ones are, None where nothing names them; units: by column, as the header spells them.
+    """
+
+    def __init__(self, lines: list[str], wanted: tuple[str, ...]) -> None:
+        self.lines, self.wanted = lines, wanted
+        self.columns: list[int] | None = None
+        self.units: list[str] = [""] * len(wanted)
+        first = next((k for k, line in enumerate(lines) if not COMMENT.match(line) and _numbers(line) > 1), len(lines))
+        stripped = [line.strip(" \t,;") for line in lines]
+        self.body = [k for k in range(first, len(lines)) if stripped[k] and stripped[k][0] not in "#%/"]
+        self.separator = self._separator()
+        head = [lines[k] for k in range(first) if stripped[k] and not stripped[k].startswith("sep=")]
+        for line in reversed(head):
+            self._name(line)
+        plain = [line for line in head if not COMMENT.match(line)]
+        if plain and self.columns is None:
+            raise ValueError(f"its columns are {', '.join(_fields(plain[-1]))}; they must be {', '.join(wanted)}")
+
+    def _separator(self) -> str | None:
+        """What parts the columns, None for blanks: that by which most of the first rows are numbers."""
+
+        def rows(separator: str | None) -> tuple[int, int]:
+            parts = [self._split(self.lines[k], separator) for k in self.body[:20]]
+            good = sum(len(row) >= len(self.wanted) and all(map(_is_number, row)) for row in parts)
+            return good, len(parts[0]) if parts else 0
+
+        return max((";", "\t", ",", None), key=rows)
+
+    def _split(self, line: str, separator: str | None) -> list[str]:
+        """The entries of a row, without quotes and without empty ones at its end, decimal commas as points."""
+        row = next(csv.reader([line], delimiter=separator)) if separator else line.split()
+        row = [entry.strip().strip('"') for entry in row]
+        while row and not row[-1]:
+            row.pop()
+        return [entry.replace(",", ".") for entry in row]
+
+    def _name(self, line: str) -> None:
+        """Take the columns, or their units, from a line before the numbers, if it names them."""
+        names = _fields(COMMENT.sub("", line))
+        known = {"", "-", *LENGTHS, *TIMES, *SPELT}
+        if self.columns is None and len(names) >= len(self.wanted) and set(map(str.lower, names)) <= known - {"t"}:
+            self.units = names  # a row of units under the names; sorted out with them
+            return
+        found = [_column(name, names) for name in self.wanted]
+        if self.columns is None and None not in found:
+            self.columns = [column for column in found if column is not None]
+            under = self.units if len(self.units) == len(names) else [""] * len(names)
+            self.units = [_unit(names[column]) or under[column] for column in self.columns]
+            if len(set(self.units[1:])) > 1:
+                raise ValueError(f"its header gives {', '.join(self.wanted[1:])} in {', '.join(self.units[1:])}")
+
+    def unit(self, style: Format, key: str, allowed: dict[str, float], column: int) -> str | None:
+        """The unit of a column by style and header, None where neither tells it."""
+        given, said = getattr(style, key), self.units[column].strip("-").lower() if self.columns else ""
+        said = SPELT.get(said, said)
+        if said and said not in allowed and not given:
+            raise ValueError(f"its header gives {self.wanted[column]} in {said}; set {key}= to {', '.join(allowed)}")
+        if given and said in allowed and said != given:
+            raise ValueError(f"its header gives {self.wanted[column]} in {said}, not in {given}; set {key}={said}")
+        return given or said or None
+
+    def data(self) -> tuple[Array, Array]:
+        """The wanted columns (N, d) and the number of each row's line."""
+        rows = [self.lines[k] for k in self.body]
+        if len(rows) < FEWEST:
+            raise ValueError(f"it has {len(rows)} samples; there must be at least {FEWEST}")
+        if self.separator != "," and any("," in row for row in rows):
+            rows = [row.replace(",", ".") for row in rows]
+        try:
+            data = np.loadtxt(
+                rows, delimiter=self.separator, usecols=self.columns, comments=None, quotechar='"', ndmin=2
+            )
+        except ValueError:
+            data = np.empty((0, 0))  # to be read row by row
+        numbers = np.array(self.body) + 1
+        if data.shape[1] != len(self.wanted) or not np.isfinite(data).all():
+            data, numbers = self._row_by_row()
+        return data, numbers
+
+    def _row_by_row(self) -> tuple[Array, Array]:
+        """The same slowly, with a sentence for the first line that cannot be used; empty rows are left out."""
+        wanted, data, numbers = ", ".join(self.wanted), [], []
+        for k in self.body:
+            row = self._split(self.lines[k], self.separator)
+            if not row:
+                continue
+            if len(row) != len(self.wanted) and self.columns is None:
+                raise ValueError(
+                    f"line {k + 1} has {len(row)} numbers; it must have {wanted}, or a first line must name the columns"
+                )
+            chosen = [row[column] if column < len(row) else "" for column in self.columns or range(len(row))]
+            if not all(map(_is_number, chosen)):
+                raise ValueError(f"line {k + 1} holds '{self.lines[k].strip()}': every entry must be a finite number")
+            data.append([float(entry) for entry in chosen])
+            numbers.append(k + 1)
+        return np.array(data).reshape(-1, len(self.wanted)), np.array(numbers)
+
+
+def _fields(line: str) -> list[str]:
+    """Entries of a header, whatever parts them; a unit in brackets stays with its name."""
+    line = re.sub(r"\s+([\[(])", r"\1", line.strip())
+    separator = next((mark for mark in ";\t," if mark in line), None)
+    return [entry.strip(' "') for entry in line.split(separator)]
+
+
+def _parts(name: str) -> list[str]:
+    """The words of a column's name in small letters, without its unit."""
+    return [word for word in re.split(r"[^a-z0-9]+", re.sub(r"[\[(].*", "", name.lower())) if word]
+
+
+def _unit(name: str) -> str:
+    """The unit in a column's name: in brackets, or its last word; empty where there is none."""
+    bracket, words = re.search(r"[\[(]([^\])]*)", name), _parts(name)
+    if bracket:
+        return bracket[1].strip()
+    return words[-1] if len(words) > 1 and words[-1] in {*LENGTHS, *TIMES, *SPELT} - TIME else ""
+
+
+def _column(wanted: str, names: Sequence[str]) -> int | None:
+    """Which of the names is the wanted column: the one of fewest words that has its word, a place's before others."""
+    ranked = []
+    for column, name in enumerate(names):
+        words = _parts(name)
+        if set(words) & (TIME if wanted == "time" else {wanted}) and not set(words) & NO_PLACE:
+            ranked.append((not {"position", "pos"} & set(words), len(words), column))
+    ranked.sort()
+    if len(ranked) > 1 and ranked[0][:2] == ranked[1][:2]:
+        both = ", ".join(names[column] for _, _, column in ranked[:2])
+        raise ValueError(f"its columns {both} could both be {wanted}; rename one")
+    return ranked[0][2] if ranked else None
+
+
+def _check(time: Array, position: Array, numbers: Array, tick: str | None) -> None:
+    """Refuse what is no movement over time; ``numbers``: lines of the samples; ``tick``: the unit of time, if told."""
+    if len(time) < FEWEST:
+        raise ValueError(f"it has samples of {len(time)} instants; there must be at least {FEWEST}")
+    steps = np.diff(time)
+    if (late := np.flatnonzero(steps <= 0)).size:
+        same = " (duplicates=drop keeps the first of several samples of one instant)" if steps[late[0]] == 0 else ""
+        raise ValueError(f"its time does not increase at line {numbers[late[0] + 1]}{same}")
+    total, usual = time[-1], np.median(steps)
+    long = steps > PAUSE * np.maximum(usual, (total - steps) / max(len(steps) - 1, 1))
+    if steps[long].sum() > total / 3:
+        worst = int(np.argmax(steps))
+        raise ValueError(
+            f"line {numbers[worst + 1]} comes {steps[worst]:.6g} s after the line before, where the usual step is "
+            f"{usual:.3g} s; delete what does not belong to the movement (or set time_unit= if its stamps are not in s)"
+        )
+    if tick is None and usual >= 1 and total > LONG:
+        likely = "ms" if usual < 1e3 else "us" if usual < 1e6 else "ns"
+        raise ValueError(
+            f"line {numbers[1]} comes {steps[0]:.6g} s after the line before, and all take {total:.6g} s; set "
+            f"time_unit={likely} if that is the unit of its stamps, time_unit=s if it is as slow as that"
+        )
+    if total < SHORT:
+        raise ValueError(f"it lasts {total:.3g} s from line {numbers[0]} to {numbers[-1]}; time_unit= must be another")
+    if not np.ptp(position, axis=0).any():
+        raise ValueError("it never moves: all its samples are at one place")
 
 
 def resampled(time: ArrayLike, position: ArrayLike, samples: int) -> Array:
@@ -56,18 +250,32 @@ def resampled(time: ArrayLike, position: ArrayLike, samples: int) -> Array:
     return path
 
 
-def demonstrations(files: str | Sequence[str], count: int, samples: int, unit: str, axes: int) -> list[Array]:
+def matching(pattern: str) -> list[str]:
+    """The file of that name or, where there is none, the files that a pattern such as ``letters/*.csv`` matches."""
+    name = str(Path(pattern).expanduser())
+    return [name] if Path(name).exists() else sorted(glob.glob(name))
+
+
+def demonstrations(
+    files: str | Sequence[str], count: int, samples: int, style: Format, axes: int, otherwise: str = "m"
+) -> list[Array]:
     """``count`` recorded paths (samples, axes) [m], the files one after another and over again.
 
     files: a name, a pattern such as ``letters/*.csv``, or a list of them. Raises ValueError as :func:`read_path` does,
     and where there are more files than ``count``.
     """
     patterns = [files] if isinstance(files, str) else list(files)
-    found = [name for pattern in patterns for name in sorted(glob.glob(pattern)) or [pattern]]
+    found = [name for pattern in patterns for name in matching(pattern) or [pattern]]
     if len(found) > count:
         raise ValueError(f"{len(found)} files are more than the {count} demonstrations of the experiment")
-    paths = [resampled(*read_path(name, unit, axes), samples) for name in found]
+    paths = [resampled(*read_path(name, style, axes, otherwise), samples) for name in found]
     return [paths[k % len(paths)] for k in range(count)]
+
+
+def _numbers(line: str) -> int:
+    """How many entries of a line are numbers, whatever parts them."""
+    return sum(re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|[-+]?inf", entry) is not None
+               for entry in re.split(r'[;,\s"]+', line.lower()))  # fmt: skip
 
 
 def _is_number(text: str) -> bool:

@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 import yaml
 
-from dexrepro.config import config_dir
+from dexrepro import chapters
+from dexrepro.config import config_files
 
 _NUMBER = r"\(([1-9]\d?)\.([1-9]\d{0,2})([a-z]?)\)"
 _MENTION = re.compile(rf"{_NUMBER}(?:\s*(?:-|\u2013|\bto\b)\s*{_NUMBER})?")
@@ -39,25 +40,33 @@ class Mention(NamedTuple):
     text: str
 
 
-def index(*roots: Path) -> list[Mention]:
-    """Every mention, in the order of the book, code first. roots: folders read; the package and its configuration."""
-    found = {mention for root in roots or _own() for path in _files(root) for mention in _of_file(path)}
+def index(folder: Path | None = None) -> list[Mention]:
+    """Every mention, in the order of the book, code first; of all code and configurations, or in a folder alone."""
+    files = {path: path.stem for kind in ("*.py", "*.yaml") for path in folder.rglob(kind)} if folder else _files()
+    found = {mention for path, name in files.items() for mention in _of_file(path, name)}
     return sorted(found, key=lambda m: (*place(m.equation), list(KINDS).index(m.kind), m.path, m.line))
 
 
-def _own() -> set[Path]:
-    package = Path(__file__).parent.parent
-    return {package} if config_dir().is_relative_to(package) else {package, config_dir()}
+def numbers(text: str) -> list[str]:
+    """The equations that a text mentions, each once, ranges expanded."""
+    return list(dict.fromkeys(equation for match in _MENTION.finditer(text) for equation in _expanded(match)))
 
 
-def _files(root: Path) -> Iterator[Path]:
-    yield from root.rglob("*.py")
-    yield from root.rglob("*.yaml")
+def _files() -> dict[Path, str]:
+    """Files with the name their contents stand under; the library's too, unless all chapters are another book's."""
+    library = Path(__file__).parent.parent
+    found = {}
+    if not all(map(chapters.is_added, chapters.numbers())):
+        found = {path: path.stem for path in library.rglob("*.py") if not path.is_relative_to(library / "chapters")}
+    for number in chapters.numbers():
+        found |= {path: path.stem for path in chapters.load(number).folder.rglob("*.py")}
+        found |= {path: name for name, path in config_files(number).items()}
+    return found
 
 
-def _of_file(path: Path) -> Iterator[Mention]:
-    source = path.read_text()
-    text, homes = (_prose(source), _definitions(source, path.stem)) if path.suffix == ".py" else _configuration(source)
+def _of_file(path: Path, name: str) -> Iterator[Mention]:
+    source = path.read_text("utf-8")
+    text, homes = (_prose(source), _definitions(source, name)) if path.suffix == ".py" else _keyed(source, name)
     for match in _MENTION.finditer(text):
         line = text.count("\n", 0, match.start()) + 1
         home = homes[line - 1]
@@ -132,11 +141,10 @@ def _fill(node: ast.AST, outer: str, homes: list[str]) -> None:
 # ---------------------------------------------------------------------------------------------- YAML: comments and keys
 
 
-def _configuration(source: str) -> tuple[str, list[str]]:
+def _keyed(source: str, name: str) -> tuple[str, list[str]]:
     """The comments of a configuration, and each line's key; a comment on a line of its own has the next one's."""
     homes = [""] * (source.count("\n") + 2)
-    package = re.search(r"^# @package (?!_global_)(\S+)", source)
-    _keys(yaml.compose(source), package[1] if package else "", homes)
+    _keys(yaml.compose(source), name, homes)
     for line in range(len(homes) - 2, -1, -1):
         homes[line] = homes[line] or homes[line + 1]
     comments = (re.match(r"(\s*)#(.*)|(.*?)(?: #(.*))?$", line) for line in source.splitlines())

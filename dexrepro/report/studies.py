@@ -10,12 +10,11 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from dexrepro import chapters
-from dexrepro.report import style
+from dexrepro.report import style, verdicts
 
 ROW = 0.2  # inch a claim
 EDGES = (0.62, 0.42)  # inch above and below the rows
 LONGEST = 30  # characters of a parameter's name
-SAFE = 0.95  # share of the samples in which a claim has to hold to be called robust
 LOOKS: dict[str, dict[str, Any]] = {  # the book's claims and ours, told apart by colour and mark
     "book": {"color": style.BOOK, "marker": "o"},
     "ours": {"color": style.RIVAL, "marker": "s"},
@@ -24,9 +23,9 @@ LOOKS: dict[str, dict[str, Any]] = {  # the book's claims and ours, told apart b
 
 def finding(study: Mapping[str, Any]) -> str:
     """The study in one sentence."""
-    claims = study["claims"].values()
-    robust = sum(row["share"] >= SAFE for row in claims)
-    return f"{robust} of {len(claims)} claims hold in at least {SAFE:.0%} of {study['samples']} samples"
+    words = [verdicts.robustness(row) for row in study["claims"].values()]
+    counts = [f"{words.count(word)} {word}" for word in ("robust", "fragile", "open") if word in words]
+    return f"Of {len(words)} claims over {study['samples']} samples: {', '.join(counts)}"
 
 
 def draw(study: Mapping[str, Any]) -> Any:

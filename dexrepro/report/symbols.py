@@ -40,6 +40,11 @@ def text(symbol: str) -> str:
     return symbol if greek == symbol else f"{greek} ({symbol})"
 
 
+def greek(phrase: str) -> str:
+    """A phrase whose words "alpha", "rho", ... are letters; "mu" and "psi" within other words stay."""
+    return re.sub(r"(?<![\w.])[A-Za-z]{2,7}(?![A-Za-z.])", lambda match: _GREEK.get(match[0], match[0]), phrase)
+
+
 def _letter(word: str) -> str:
     if word in _GREEK:
         return _GREEK[word]

@@ -8,11 +8,11 @@ from itertools import accumulate
 from math import cos, sin
 from operator import add
 from types import ModuleType
-from typing import Generic, Protocol, TypeVar, cast, overload
+from typing import Generic, cast, overload
 
 import numpy as np
 
-from dexrepro.arrays import Array, Number, Real
+from dexrepro.arrays import Array, Number, Real, Row
 from dexrepro.robots.arm import Arm, Colour, Joint, Link, Pose, Shape, Tool
 from dexrepro.robots.kinematics import forward
 
@@ -103,16 +103,6 @@ class PlanarTip:
         """Jacobian of (x, y), shape (2, n) [m/rad]."""
         levers = self.levers(q)
         return np.array(([-y for _, y in levers], [x for x, _ in levers]))
-
-
-Held = TypeVar("Held", covariant=True)
-
-
-class Row(Protocol[Held]):
-    """Numbers by index: a list or tuple of floats, or the rows of an array."""
-
-    def __getitem__(self, index: int, /) -> Held:
-        """The number of an index."""
 
 
 class PlanarChain(Generic[Number]):

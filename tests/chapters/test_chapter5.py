@@ -54,7 +54,7 @@ def run(tmp_path, experiment, *overrides):
 
 CASES = {
     "corrected": "{hand.letter: w}",
-    "printed_sign": "{hand.letter: w, law.network_sign: -1}",
+    "printed_sign": "{hand.letter: w, law.printed: [network]}",
     "no_network": "{hand.letter: w, network.enabled: false}",
 }
 
@@ -89,7 +89,7 @@ def test_lemma_as_printed_misses_the_pseudo_inverse_of_mixed_blocks_but_not_the_
 
 def test_the_printed_sign_of_the_damping_teaches_another_movement(tmp_path):
     short = ["style_transformation.features.draws=1", "~style_transformation.cases"]
-    cases = "+style_transformation.cases={default: {}, printed: {training.damping_sign: -1}}"
+    cases = "+style_transformation.cases={default: {}, printed: {training.printed: true}}"
     metrics = run(tmp_path, "style_transformation", *short, cases)
     assert metrics["style_transformation.default.z.final"] < 0.2
     assert metrics["style_transformation.printed.z.final"] > 1.0

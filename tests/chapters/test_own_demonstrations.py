@@ -62,12 +62,52 @@ def test_the_printed_amplitude_is_not_evaluated_where_it_is_not_defined() -> Non
 @pytest.mark.parametrize(
     ("files", "sentence"),
     [
-        ("over.csv", r"demonstrations: start at \(-6, 0, 0\) cm instead of \(2.3, 0, 0\) cm; set shared.scene.start"),
-        ("letter.csv", "demonstrations: line 1 of 'letter.csv' has 3 numbers; it must have time, x, y, z"),
+        ("over.csv", r"demonstrations: they go from \(-6, 0\) to \(6, 0\) cm instead of from \(2.3, 0\) to \(20, 9\)"),
+        ("letter.csv", "demonstrations: 'letter.csv': line 1 has 3 numbers; it must have time, x, y, z"),
         ("no*.csv", r"demonstrations: cannot read 'no\*.csv'"),
     ],
 )
 def test_a_reach_that_cannot_be_used_gets_one_sentence(files: str, sentence: str) -> None:
     config = configured("7", "reaching_demonstrations", "corrected", f"demonstrations={files}")
+    with pytest.raises(InputError, match=sentence):
+        skills.demonstrate(config)
+
+
+@pytest.mark.parametrize("goal", [(-6.0, 3.0), (30.0, 15.0), (1.0, -9.0)])
+@pytest.mark.parametrize("desk", [0.0, 75.0])
+def test_a_reach_on_another_desk_is_learned_after_following_the_refusal(goal: tuple[float, float], desk: float) -> None:
+    share = np.linspace(0, 1, 60)
+    progress = (share**3 * (10 - 15 * share + 6 * share**2))[:, None]
+    path = np.array([40.0, 10.0, desk]) + progress * (*goal, 0.0) + np.sin(np.pi * share)[:, None] * (0, 0, 1)
+    np.savetxt("desk.csv", np.column_stack([share, path]), delimiter=",")
+    overrides = ["reaching_demonstrations.demonstrations=desk.csv"]
+
+    def attempt() -> Any:
+        values = experiment_cases(compose_chapter("7", overrides), "reaching_demonstrations")["corrected"]
+        return skills.demonstrate(live({**values, "perturbation": 0.0, "seed": 0}))
+
+    for _ in range(2):
+        with pytest.raises(InputError, match=r"set (shared\.scene\.start=.*)") as refused:
+            attempt()
+        words = str(refused.value).partition("; set ")[2].split()
+        overrides += words[:2] if len(overrides) == 1 else words[2:]
+    ordinary, reactions = attempt()
+    assert ordinary[:, -1] == pytest.approx(np.array([[40 + goal[0], 10 + goal[1], 0.0]] * len(ordinary)), abs=0.2)
+    assert np.isfinite(reactions).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ("height", "they end 5 cm above their start"),
+        ("spread", "their starts, or their goals, lie more than 1 cm from their mean"),
+    ],
+)
+def test_reaches_that_do_not_begin_and_end_together_get_one_sentence(change: str, sentence: str) -> None:
+    share = np.linspace(0, 1, 60)[:, None]
+    for number in (1, 2):
+        path = (2.3, 0, 0) + share * (17.7 + 4 * number * (change == "spread"), 9, 5 * (change == "height"))
+        np.savetxt(f"reach{number}.csv", np.column_stack([share, path]), delimiter=",")
+    config = configured("7", "reaching_demonstrations", "corrected", "demonstrations=reach*.csv")
     with pytest.raises(InputError, match=sentence):
         skills.demonstrate(config)

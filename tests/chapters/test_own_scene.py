@@ -12,6 +12,7 @@ from dexrepro.case import live
 from dexrepro.chapters.own.scene import experiment as scene
 from dexrepro.cli import run_overrides
 from dexrepro.config import InputError, compose_chapter, experiment_cases
+from dexrepro.control.contract import Command
 from dexrepro.experiment import Recording
 
 URDF = """
@@ -80,12 +81,15 @@ def test_a_tracking_law_follows_the_leader(law: str, largest: float) -> None:
 
 
 class Spring:
-    """A task-space law of the user's: F = k (x_d - x) + d (x_d' - x')."""
+    """An end-point law of the user's: F = k (x_d - x) + d (x_d' - x')."""
 
-    def reset(self) -> None: ...
+    kind = "end_point"
 
-    def __call__(self, arm: Any, reference: Any, force: Any) -> Any:
-        return 2000 * (reference.position - arm.position) + 80 * (reference.velocity - arm.velocity)
+    def reset(self, measured: Any) -> None: ...
+
+    def __call__(self, measured: Any, desired: Any) -> Command:
+        error, rate = desired.position - measured.position, desired.velocity - measured.velocity
+        return Command(force=2000 * error + 80 * rate)
 
 
 @pytest.mark.parametrize(
@@ -147,12 +151,16 @@ FIXED = "{_target_: dexrepro.control.holding.FixedDistance, dt: 1, displacement:
         ("leader", "{points: [[0, 0, 0]]}", "scene.leader.points: give two rows or more of time"),
         ("leader", "{circle: {radius: 1}}", "scene.leader.circle: no configuration key 'centre'"),
         ("leader", "{csv: no.csv}", "scene.leader.csv: cannot read 'no.csv'"),
-        ("law", "{_target_: fractions.Fraction}", r"Fraction is called with \(\); it must be \(position, force\)"),
+        (
+            "law",
+            "{_target_: fractions.Fraction}",
+            "scene law Fraction must declare its kind, one of joint, end_p",
+        ),
         ("start", "[0.1]", r"scene.start = \[0.1\] is not allowed: it must be 2 joint angles"),
         ("start", "5", "scene.start = 5 is not allowed: it must be 2 joint angles"),
         ("offset", "[0,0]", r"scene.offset = \[0, 0\] is not allowed: it must be three numbers"),
         ("gravity", "5", "scene.gravity = 5 is not allowed: it must be three numbers"),
-        ("law", FIXED, "a force law needs the direction it acts along"),
+        ("law", FIXED, "a holding law needs the direction it acts along"),
     ],
 )
 def test_what_cannot_be_used_gets_one_sentence(key: str, value: str, sentence: str) -> None:

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from instant import at
 
 from dexrepro.control.barrier_tracking import BarrierTracking, barrier_energy, barrier_terms
-from dexrepro.control.task_space import ArmState, Motion
+from dexrepro.control.motion import Motion
 from dexrepro.networks import AdaptiveNetwork, GrowingGaussians
 
 BOUND = 0.05
@@ -60,7 +61,7 @@ def drive(law, mass=2.0, load=(0.0, -20.0), start=(0.03, 0.0), duration=3.0, dt=
         angle = 0.5 * step * dt
         circle, turn = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
         target = Motion(np.array([0.1, 0.2]) + 0.1 * circle, 0.05 * turn, -0.025 * circle)
-        force = law(ArmState(position, velocity, position, velocity), target, np.array(push))
+        force = law(at(position, np.array(push), velocity), target).force
         errors.append(position - target.position)
         velocity = velocity + dt * (force + np.array(load) + np.array(push)) / mass
         position = position + dt * velocity
@@ -83,7 +84,7 @@ def test_the_networks_carry_the_load_and_not_the_feedback():
 def test_the_measured_force_is_cancelled_with_the_minus_sign():
     quiet = drive(controller(boundary_layer=0.01), duration=0.5)
     pushed = drive(controller(boundary_layer=0.01), duration=0.5, push=(10.0, 0.0))
-    doubled = drive(controller(boundary_layer=0.01, force_sign=1.0), duration=0.5, push=(10.0, 0.0))
+    doubled = drive(controller(boundary_layer=0.01, printed=True), duration=0.5, push=(10.0, 0.0))
     assert pushed == pytest.approx(quiet, abs=1e-9)
     assert np.abs(doubled - quiet).max() > 1e-4
 
@@ -101,5 +102,32 @@ def test_enhanced_features_have_one_unit_of_length_more_a_node(x, y):
 def test_a_reset_law_repeats_itself():
     law = controller()
     first = drive(law, duration=0.2)
-    law.reset()
+    law.reset(at(np.zeros(2)))
     assert np.array_equal(drive(law, duration=0.2), first)
+
+
+def test_before_anything_is_learned_the_force_is_barrier_velocity_and_robust_term():
+    """F = -z1 / cos^2(pi z1^2 / (2 iota^2)) - K_p z2 - K_r sgn(z2), Eq. (8.31), with z2 = x' - x_0' + K_1 phi."""
+    law, x, v = controller(), np.array([0.23, 0.18]), np.array([0.05, -0.02])
+    target = Motion(np.array([0.21, 0.2]), np.array([0.01, 0.03]), np.array([0.2, -0.1]))
+    z1 = x - target.position
+    phi = BOUND**2 / (2 * np.pi * z1) * np.sin(np.pi * z1**2 / BOUND**2)
+    z2 = v - target.velocity + 80 * phi
+    force = law(at(x, np.zeros(2), v), target).force
+    assert force == pytest.approx(-z1 / np.cos(np.pi * z1**2 / (2 * BOUND**2)) ** 2 - 60 * z2 - 5 * np.sign(z2))
+
+
+def test_the_inertia_learns_from_the_rate_of_the_virtual_velocity():
+    """dW_D/dt = -Gamma S (z2 alpha'^T), Eq. (8.38), with alpha' by a difference along the motion."""
+    law, x, v = controller(), np.array([0.23, 0.18]), np.array([0.05, -0.02])
+    target = Motion(np.array([0.21, 0.2]), np.array([0.01, 0.03]), np.array([0.2, -0.1]))
+
+    def alpha(dt):
+        z1 = x + dt * v - target.position - dt * target.velocity
+        return target.velocity + dt * target.acceleration - 80 * np.array([barrier_terms(z, BOUND)[0] for z in z1])
+
+    law(at(x, np.zeros(2), v), target)
+    rate = (alpha(1e-6) - alpha(-1e-6)) / 2e-6
+    inertia = law.networks[0]
+    expected = -1e-3 * 100.0 * np.outer(inertia.features, np.outer(v - alpha(0.0), rate))
+    assert inertia.weights == pytest.approx(expected, rel=1e-6)

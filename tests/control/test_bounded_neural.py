@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from instant import at
 from planar_plant import PlanarPlant
 
 from dexrepro.control.bounded_neural import BoundedNeuralTracking, barrier
 from dexrepro.control.gravity_pd import GravityPD
+from dexrepro.control.motion import Motion
 from dexrepro.control.prescribed_performance import PerformanceBound
 from dexrepro.networks import AdaptiveNetwork, Gaussians
 
@@ -37,7 +39,8 @@ def desired(t):
     phase = np.array([2.0, 3.0]) * t
     rate = np.array([2.0, 3.0])
     size = np.array([0.3, 0.2])
-    return np.array([0.4, 0.8]) + size * np.sin(phase), size * rate * np.cos(phase), -size * rate**2 * np.sin(phase)
+    position = np.array([0.4, 0.8]) + size * np.sin(phase)
+    return Motion(position, size * rate * np.cos(phase), -size * rate**2 * np.sin(phase))
 
 
 def network(gain=3.0):
@@ -56,7 +59,7 @@ def run(tracking, offset=(0.05, -0.05), duration=3.0):
     for k in range(round(duration / STEP)):
         target = desired(k * STEP)
         errors.append(target[0] - q)
-        q, dq = PLANT.step(q, dq, tracking(q, dq, target), 0.0, STEP)
+        q, dq = PLANT.step(q, dq, tracking(at(q, 0.0, dq), target).torque, 0.0, STEP)
     return np.array(errors)
 
 
@@ -78,7 +81,7 @@ def test_network_makes_up_for_a_wrong_model():
 
 
 def test_printed_sign_of_the_network_drives_the_errors_out_of_the_bound():
-    assert usage(run(law(learner=network(), network_sign=-1))) > 1
+    assert usage(run(law(learner=network(), printed=["network"]))) > 1
 
 
 def test_barrier_term_keeps_the_bound_where_it_would_be_left():
@@ -87,13 +90,13 @@ def test_barrier_term_keeps_the_bound_where_it_would_be_left():
 
 
 def test_printed_gain_vanishes_with_the_bound_s_rate():
-    errors = run(law(barrier_gain=0.0, virtual_gain="printed"))
+    errors = run(law(barrier_gain=0.0, printed=["virtual_gain"]))
     assert np.abs(errors[-1]).max() > np.abs(run(law(barrier_gain=0.0))[-1]).max()
 
 
 def test_virtual_gain_s_derivative_is_that_of_the_gain():
-    for form in ("corrected", "printed"):
-        tracking = law(virtual_gain=form)
+    for printed in ((), ["virtual_gain"]):
+        tracking = law(printed=printed)
         gains = [tracking._virtual_gain() for _ in range(4)]
         assert (gains[2][1] - gains[0][1]) / (2 * STEP) == pytest.approx(gains[1][2], rel=1e-4)
 
@@ -101,10 +104,11 @@ def test_virtual_gain_s_derivative_is_that_of_the_gain():
 def test_contact_torque_is_taken_off_and_the_torque_limited():
     tracking, target = law(), desired(0.0)
     q, dq, _ = target
-    plain = tracking(q, dq, target)
-    tracking.reset()
-    np.testing.assert_allclose(tracking(q, dq, target, np.array([0.1, -0.2])), plain - [0.1, -0.2])
-    assert np.abs(law(torque_limit=0.05)(q - 1.0, dq, target)).max() == pytest.approx(0.05)
+    plain = tracking(at(q, 0.0, dq), target).torque
+    tracking.reset(at(q))
+    touched = tracking(at(q, np.array([0.1, -0.2]), dq), target).torque
+    np.testing.assert_allclose(touched, plain - [0.1, -0.2])
+    assert np.abs(law(torque_limit=0.05)(at(q - 1.0, 0.0, dq), target).torque).max() == pytest.approx(0.05)
 
 
 def test_barrier_value_has_the_derivative_of_the_corrected_equation():
@@ -121,9 +125,9 @@ def test_barrier_value_has_the_derivative_of_the_corrected_equation():
 def test_gravity_pd_holds_the_arm_still_with_an_exact_model():
     tracking = GravityPD(Model(PLANT), stiffness=1.0, damping=0.1)
     q = np.array([0.4, 0.8])
-    torque = tracking(q, np.zeros(2), (q, np.zeros(2), np.zeros(2)))
+    torque = tracking(at(q, 0.0, np.zeros(2)), Motion(q, np.zeros(2), np.zeros(2))).torque
     np.testing.assert_allclose(torque, Model(PLANT).gravity(q))
-    stiffer = tracking(q - 0.1, np.zeros(2), (q, np.zeros(2), np.zeros(2)))
+    stiffer = tracking(at(q - 0.1, 0.0, np.zeros(2)), Motion(q, np.zeros(2), np.zeros(2))).torque
     np.testing.assert_allclose(stiffer - torque, 0.1)
 
 
@@ -132,7 +136,7 @@ def test_the_printed_robust_term_drives_every_weight_upward_whatever_the_error()
         learner = network(gain=0.0)
         tracking = law(learner=learner, robust_rate=1.0)
         q, dq, ddq = desired(0.0)
-        tracking(q - side * 0.1, dq, (q, dq, ddq))
+        tracking(at(q - side * 0.1, 0.0, dq), Motion(q, dq, ddq))
         delta = tracking.velocity_error
         np.testing.assert_allclose(learner.weights[0], STEP * np.tanh(delta / 0.1) * delta)
         assert (learner.weights > 0).all()
@@ -140,7 +144,7 @@ def test_the_printed_robust_term_drives_every_weight_upward_whatever_the_error()
 
 def test_the_printed_gain_has_the_claimed_rate_only_while_the_bound_shrinks_fast_enough():
     def rate(decay):
-        tracking = law(virtual_gain="printed", convergence=10.0)
+        tracking = law(printed=["virtual_gain"], convergence=10.0)
         tracking.bound = PerformanceBound(0.15, 1e-9, decay)
         _, gain, _ = tracking._virtual_gain()
         return -(gain + decay)  # -(L - v'/v), which (5.39) wants to be k_c at least

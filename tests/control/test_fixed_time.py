@@ -2,8 +2,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from instant import at
 
 from dexrepro.control.fixed_time import FixedTimeBackstepping, secant, settling_bound, signed_power
+from dexrepro.control.motion import Motion
 from dexrepro.networks import AdaptiveNetwork, GrowingGaussians
 
 FIRST, SECOND, POWERS = (30.0, 2.0, 2.0), (20.0, 1.5, 1.5), (0.5, 2.0)
@@ -31,7 +33,7 @@ def law(**options):
 
 def test_torque_minus_damping_times_velocity_is_the_printed_law():
     e1, dq, desired = np.array([0.1, -0.2]), np.array([0.5, 0.3]), np.array([0.0, 0.1])
-    torque, damping = law()(e1, np.zeros(2), dq, desired)
+    torque, damping, _ = law()(at(e1, 0.0, dq), Motion(np.zeros(2), desired, np.zeros(2)))
     x2d = -30 * e1 - 2 * signed_power(e1, 0.5) - 2 * signed_power(e1, 2.0) + desired
     e2 = dq - x2d
     expected = -e1 - 20 * e2 - 1.5 * signed_power(e2, 0.5) - 1.5 * signed_power(e2, 2.0)
@@ -42,18 +44,18 @@ def test_printed_virtual_control_halves_the_second_error():
     e1, dq = np.array([0.1]), np.array([0.5])
     corrected, printed = law(), law(printed=True)
     for controller in (corrected, printed):
-        controller(e1, np.zeros(1), dq, np.zeros(1))
-    assert printed.error == pytest.approx(corrected.error / 2)
+        controller(at(e1, 0.0, dq), Motion(*np.zeros((3, 1))))
     # As printed: x_2d = v + e2 and e2 = dq - x_2d, with v the corrected x_2d.
-    assert printed.virtual == pytest.approx(corrected.virtual + printed.error)
+    assert dq - printed.virtual == pytest.approx((dq - corrected.virtual) / 2)
+    assert printed.virtual == pytest.approx(corrected.virtual + dq - printed.virtual)
 
 
 def simulate(error, controller, load=0.0, seconds=1.5, mass=1.0):
     """A mass under the law, damping applied implicitly; returns its errors."""
     h, position, velocity, errors = 1e-3, error, 0.0, []
     for _ in range(round(seconds / h)):
-        torque, damping = controller(np.array([position]), np.array([position]), np.array([velocity]), np.zeros(1))
-        controller.adapt()
+        told = at(np.array([position]), 0.0, np.array([velocity]))
+        torque, damping, _ = controller(told, Motion(*np.zeros((3, 1))))
         velocity = (velocity + h / mass * (float(torque[0]) + load)) / (1 + h / mass * float(damping[0]))
         position += h * velocity
         errors.append(abs(position))

@@ -2,11 +2,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from instant import at
+from planar_plant import PlanarPlant
 
 from dexrepro.control.global_adaptive import GlobalAdaptiveControl, RobustTerm, Switch
+from dexrepro.control.motion import Motion
 from dexrepro.control.prescribed_performance import PerformanceBound
 from dexrepro.networks import AdaptiveNetwork, GrowingGaussians
-from tests.control.planar_plant import PlanarPlant
 
 BOUND = PerformanceBound(initial=1.25, final=0.1, decay=1.0, lower=0.2, upper=0.2)
 
@@ -14,7 +16,7 @@ BOUND = PerformanceBound(initial=1.25, final=0.1, decay=1.0, lower=0.2, upper=0.
 def ellipse(t):
     a, rate = 2 * np.pi * t / 5 + np.pi / 2, 2 * np.pi / 5
     c, s = np.cos(a), np.sin(a)
-    return (
+    return Motion(
         np.array([1 + 0.3 * c, 0.2 * s]),
         rate * np.array([-0.3 * s, 0.2 * c]),
         rate**2 * np.array([-0.3 * c, -0.2 * s]),
@@ -41,11 +43,15 @@ def control(plant, network, **options):
     )
 
 
+def tip(plant, q, dq):
+    return at(plant.position(q), 0.0, plant.jacobian(q) @ dq, joints=(q, dq))
+
+
 def follow(law, plant, duration, force=(0.0, 0.0)):
     q, dq = plant.inverse(np.array([1.0, 0.0])), np.zeros(2)
     errors, energies = [], []
     for k in range(round(duration / 1e-3)):
-        torque, damping = law(q, dq, *ellipse(k * 1e-3))
+        torque, damping, _ = law(tip(plant, q, dq), ellipse(k * 1e-3))
         mass = plant.dynamics(q, dq)[0]
         z2 = law.velocity_error
         energies.append(0.5 * np.sum(np.log(1 / (1 - law.usage**2))) + 0.5 * z2 @ mass @ z2)
@@ -73,7 +79,7 @@ def test_virtual_acceleration_is_the_derivative_of_the_virtual_velocity():
     law.step = 1e-6
     q, dq, alphas = plant.inverse(np.array([1.0, 0.05])), np.array([0.4, -0.7]), []
     for k in range(3):
-        law(q + k * 1e-6 * dq, dq, *ellipse(k * 1e-6))
+        law(tip(plant, q + k * 1e-6 * dq, dq), ellipse(k * 1e-6))
         alphas.append(law.input.copy())
     assert alphas[1][6:8] == pytest.approx((alphas[2][4:6] - alphas[0][4:6]) / 2e-6, rel=1e-5)
 

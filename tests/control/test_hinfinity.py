@@ -2,10 +2,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from instant import at
 from scipy.linalg import eigvals
 
 from dexrepro.control.hinfinity import HInfinityTracking, hinfinity_gain, integrator_chain
-from dexrepro.control.task_space import ArmState, Motion
+from dexrepro.control.motion import Motion
 
 
 class PointMass:
@@ -27,7 +28,7 @@ class PointMass:
 def settle(law, plant, duration=2.0, dt=1e-3, push=0.0):
     position, velocity, target = np.array([0.1, 0.0]), np.zeros(2), Motion(np.zeros(2), np.zeros(2), np.zeros(2))
     for _ in range(round(duration / dt)):
-        force = law(ArmState(position, velocity, position, velocity), target, np.zeros(2))
+        force = law(at(position, np.zeros(2), velocity), target).force
         acceleration = (force + push - plant.bias(position, velocity)) / plant.mass
         velocity = velocity + dt * acceleration
         position = position + dt * velocity

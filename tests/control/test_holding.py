@@ -2,6 +2,7 @@ import itertools
 
 import numpy as np
 import pytest
+from instant import at
 
 from dexrepro.control.force_control import IntegralForceControl
 from dexrepro.control.holding import AutoregressiveHolding, Compliant, FixedDistance
@@ -17,13 +18,13 @@ def proposed(**changes):
 
 def hold(law, duration, stiffness=50.0, speed=0.0, unilateral=True):
     """Force on a follower with perfect tracking; the partner moves at ``speed`` [m/s] against a spring."""
-    law.reset(0.0)
+    law.reset(at(0.0))
     z, forces = 0.0, []
     for k in range(round(duration / DT)):
         force = stiffness * (speed * k * DT - z)
         force = max(0.0, force) if unilateral else force
         forces.append(force)
-        z = law(z, force)
+        z = law(at(z, force))
     return np.array(forces)
 
 
@@ -41,10 +42,10 @@ def test_ramp_error_decays_with_the_weights_time_constant():
 def test_a_swinging_partner_leaves_the_force_error_of_the_linear_closed_loop():
     """Adapting weights act as an integral: e = k s^2 (s + L) x / ((s + L) (s^2 + k a s + k N b) + k N a), N = Z.Z."""
     law, stiffness, swing, rate, errors, z = proposed(), 50.0, 0.01, 0.5, [], 0.0
-    law.reset(0.0)
+    law.reset(at(0.0))
     for k in range(round(60.0 / DT)):
         errors.append(stiffness * (swing * np.sin(rate * k * DT) - z) - DESIRED)
-        z = law(z, errors[-1] + DESIRED)
+        z = law(at(z, errors[-1] + DESIRED))
     n, s = 1.0 + 3 * (DESIRED / stiffness) ** 2, 1j * rate
     loop = (s + 2.0) * (s**2 + stiffness * 0.11 * s + stiffness * n * 1e-4) + stiffness * n * 0.11
     assert max(errors[-15000:]) == pytest.approx(abs(stiffness * swing * s**2 * (s + 2.0) / loop), rel=0.03)
@@ -59,17 +60,17 @@ def test_without_weights_a_ramp_leaves_speed_over_gain():
 
 def test_estimator_gain_cancels_in_the_reference():
     law = proposed(estimator_gain=7.0)
-    law.reset()
+    law.reset(at(0.0))
     rng = np.random.default_rng(0)
     for force, z in rng.normal(size=(50, 2)):
         weights, before = law.weights.copy(), law.reference
-        law(z, force)
+        law(at(z, force))
         rate = (law.reference - before) / DT
         assert rate == pytest.approx(weights @ law.regressor + 0.11 * (force - DESIRED), abs=1e-9)
 
 
 def test_the_printed_definition_of_the_error_loses_contact_at_once():
-    forces = hold(proposed(error="printed"), 1.5)
+    forces = hold(proposed(printed=True), 1.5)
     np.testing.assert_array_equal(forces, 0.0)
 
 
@@ -102,17 +103,37 @@ def test_compliant_tracking_still_reaches_the_desired_force():
 def test_a_batch_equals_its_members():
     gains = np.array([0.05, 0.11])
     law = proposed(gain=gains)
-    law.reset(np.zeros(2))
+    law.reset(at(np.zeros(2)))
     z = np.zeros(2)
     for _ in range(500):
-        z = law(z, np.maximum(0.0, -50.0 * z))
+        z = law(at(z, np.maximum(0.0, -50.0 * z)))
     for gain, end in zip(gains, z):
         assert -50.0 * end == pytest.approx(hold(proposed(gain=gain), 0.501)[-1], rel=1e-12)
 
 
 def test_fixed_distance_is_reached_at_the_set_speed_and_kept():
     law = FixedDistance(dt=0.01, displacement=-0.15, speed=0.3)
-    law.reset()
-    path = [float(law(0.0, 0.0)) for _ in range(60)]
+    law.reset(at(0.0))
+    path = [float(law(at(0.0))) for _ in range(60)]
     assert path[9] == pytest.approx(-0.03)
     assert path[-1] == -0.15
+
+
+def test_the_regressor_holds_the_present_displacement_and_the_ones_before():
+    """Z = [1, z_A(t), z_A(t - dt), ...], Eq. (1.27); the weights learn from it in the same call, Eq. (1.30)."""
+    law = proposed(lags=3)
+    law.reset(at(0.0))
+    weights, estimate = np.zeros(4), 0.0
+    for z, force, regressor in (
+        (0.1, 4.0, [1, 0.1, 0, 0]),
+        (0.3, 7.0, [1, 0.3, 0.1, 0]),
+        (0.2, 9.0, [1, 0.2, 0.3, 0.1]),
+    ):
+        law(at(z, force))
+        error = estimate - z
+        rate = weights @ regressor - 2.0 * error
+        weights = weights - DT * (error + 1e-4 * (DESIRED - force)) * np.array(regressor)
+        estimate += DT * rate
+        assert law.regressor == pytest.approx(np.array(regressor))
+        assert law.weights == pytest.approx(weights)
+        assert law.estimate == pytest.approx(estimate)

@@ -2,11 +2,13 @@ import math
 
 import numpy as np
 import pytest
+from instant import at
 
 from dexrepro.control.force_control import ForceControl, IntegralForceControl
 from dexrepro.control.holding_line import HoldingLineRegulation
 from dexrepro.control.holding_reference import FadeIn, ImpedanceReference, KnownMovement, NonImpedanceReference
 from dexrepro.control.joint_pd import JointPD
+from dexrepro.control.motion import Motion
 from dexrepro.control.movement_estimation import MovementEstimation
 from dexrepro.control.passive_impedance import PassiveImpedance
 
@@ -15,12 +17,12 @@ DT, STIFFNESS, REST, DESIRED = 1e-3, 35.0, 0.55, 1.0
 
 def hold(law, duration, partner=lambda t: 0.0, start=0.5):
     """The arm stands exactly where the law asks for; returns time and force."""
-    law.reset(start)
+    law.reset(at(start))
     position, forces = start, []
     for i in range(round(duration / DT)):
         force = STIFFNESS * (REST + partner(i * DT) - position)
         forces.append(force)
-        position = law(position, force)
+        position = law(at(position, force))
     return np.array(forces)
 
 
@@ -41,7 +43,7 @@ def test_lateral_offset_decays_with_the_time_constant_of_the_spring():
 
 
 def test_the_opposite_sign_of_the_regulation_drives_the_arms_apart():
-    law = HoldingLineRegulation(gain=1e-3, sign=1.0)
+    law = HoldingLineRegulation(gain=1e-3, printed=False)
     for _ in range(1000):
         law(0.08 + law.displacement)
     assert law.displacement > 0.08
@@ -69,9 +71,9 @@ def test_passive_impedance_is_second_order_accurate():
 
     def position(dt):
         law = PassiveImpedance(mass=1.0, damping=2.0, desired_force=0.0, dt=dt)
-        law.reset(0.0)
+        law.reset(at(0.0))
         for _ in range(round(1 / dt)):
-            x = law(0.0, 1.0)
+            x = law(at(0.0, 1.0))
         return x
 
     exact = 0.5 * (1 - 0.5 * (1 - math.exp(-2.0)))
@@ -85,9 +87,9 @@ def test_estimated_reference_reaches_the_desired_force_on_an_unknown_object():
 def test_static_equilibrium_obeys_the_wrong_stiffness():
     """Held at a wrong place, the force error is khat (x_r - x_1)."""
     law = reference(rates=(0.0, 100.0, 500.0, 500.0))
-    law.reset(0.5)
+    law.reset(at(0.5))
     for _ in range(6000):
-        target = law(0.51, STIFFNESS * (REST - 0.51))
+        target = law(at(0.51, STIFFNESS * (REST - 0.51)))
     assert 30.0 * (target - 0.51) == pytest.approx(STIFFNESS * (REST - 0.51) - DESIRED, abs=1e-5)
 
 
@@ -95,9 +97,9 @@ def test_lead_is_damping_times_velocity_plus_mass_times_acceleration():
     lead = dict(mass=0.01, damping=0.1, stiffness=10.0)
     frozen = dict(rates=(0, 0, 0, 0), coefficients=(0.55, 0.3, -0.2))
     plain, led = reference(**frozen), reference(ImpedanceReference, lead, **frozen)
-    plain.reset(0.5), led.reset(0.5)
+    plain.reset(at(0.5)), led.reset(at(0.5))
     time = np.arange(900) * DT
-    difference = [led(0.5, 1.0) - plain(0.5, 1.0) for _ in time]
+    difference = [led(at(0.5, 1.0)) - plain(at(0.5, 1.0)) for _ in time]
     assert difference == pytest.approx(-np.expm1(-5 * time) * (0.1 * (0.3 - 0.4 * time) - 0.01 * 0.4) / 10.0, abs=1e-12)
 
 
@@ -108,8 +110,8 @@ def test_without_mass_and_damping_the_lead_vanishes():
 
 def test_reference_fades_in_from_where_the_arm_stands():
     law = reference()
-    law.reset(0.5)
-    assert law(0.5, 1.75) == 0.5
+    law.reset(at(0.5))
+    assert law(at(0.5, 1.75)) == 0.5
 
 
 def test_a_law_starts_afresh_after_reset():
@@ -120,14 +122,16 @@ def test_a_law_starts_afresh_after_reset():
 
 def test_joint_pd_pulls_towards_the_reference_and_brakes():
     law = JointPD(stiffness=np.array([700.0, 600.0]), damping=np.array([10.0, 1.0]))
-    assert law(np.array([0.1, 0.0]), np.zeros(2), np.array([0.0, 2.0])) == pytest.approx([70.0, -2.0])
-    assert law(np.zeros(2), np.zeros(2), np.ones(2), np.ones(2)) == pytest.approx([0.0, 0.0])
+    still, rates = np.zeros(2), np.array([0.0, 2.0])
+    told = at(still, 0.0, rates)
+    assert law(told, Motion(np.array([0.1, 0.0]), still, still)).torque == pytest.approx([70.0, -2.0])
+    assert law(told, Motion(still, rates, still)).torque == pytest.approx([0.0, 0.0])
 
 
 def test_a_faded_law_starts_at_rest_and_ends_as_itself():
     law = FadeIn(law=ForceControl(gain=0.01, desired_force=1.0), smoothing_rate=5, smoothing_power=1, dt=DT)
-    law.reset(0.5)
-    targets = [law(0.5, 3.0) for _ in range(4000)]
+    law.reset(at(0.5))
+    targets = [law(at(0.5, 3.0)) for _ in range(4000)]
     assert targets[0] == 0.5
     assert targets[-1] == pytest.approx(0.52, abs=1e-9)
 

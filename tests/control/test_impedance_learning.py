@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from instant import at
 
 from dexrepro.control.impedance_learning import (
     DONE,
@@ -9,11 +10,11 @@ from dexrepro.control.impedance_learning import (
     IntegratingReference,
     InteractionLaw,
     LearnedGain,
-    Reference,
     StaticReference,
     soft_transfer,
 )
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, optimal_gain, steady_fraction
+from dexrepro.control.motion import Motion
 
 COST = InteractionCost(tracking=70.0, effort=5.0, output=0.05)
 INITIAL, DT = [-30.01, 1.47], 1e-3
@@ -36,7 +37,7 @@ def press(gain, duration, stiffness=10.0, damping=0.01, depth=0.08, reference=No
         path = depth * (1.0 - 1.2 * np.exp(-2.0 * step * DT))
         rate = depth * 2.4 * np.exp(-2.0 * step * DT)
         force = -(stiffness * position + damping * velocity) if side * position > 0 else 0.0
-        state = law(Reference(side * path, side * rate, -2.0 * side * rate), position, force)
+        state = law(at(position, force), Motion(side * path, side * rate, -2.0 * side * rate))
         history.append((position, force, *gain.gain, law.desired_force))
         position, velocity = state.position, state.velocity
     return law, np.array(history)
@@ -89,15 +90,15 @@ def test_the_surface_is_found_by_touch():
 
 def test_the_reference_returns_to_the_path_after_contact():
     law = InteractionLaw(ConstantGain([-5.0, 0.3]), IntegratingReference(0.5, 50.0, DT), 0.05, 1, 1e-6, 5.0)
-    state = law(Reference(0.01, 0.0, 0.0), 0.005, -0.05)
+    state = law(at(0.005, -0.05), Motion(0.01, 0.0, 0.0))
     for _ in range(3000):
-        state = law(Reference(-0.05, 0.0, 0.0), -0.01, 0.0)
+        state = law(at(-0.01), Motion(-0.05, 0.0, 0.0))
     assert state.position == pytest.approx(-0.05, abs=1e-4)
     assert law.gain.exploration == 0.0
 
 
 def test_the_printed_sign_pushes_into_the_object_without_end():
-    law, history = press(ConstantGain(INITIAL), duration=1.0, sign=-1.0)
+    law, history = press(ConstantGain(INITIAL), duration=1.0, printed=True)
     assert abs(history[-1, 0]) > 1.0
     assert law.desired_force * history[-1, 0] < 0
 
@@ -113,7 +114,7 @@ def test_at_the_balance_the_wanted_force_is_the_one_felt_exploration_included():
     gain, reference, surface, force = ConstantGain([-5.0, 0.3]), Target(rate=20.0, dt=DT), 0.02, -0.4
     gain.exploration = 0.07
     law = InteractionLaw(gain, reference, COST.output, 1, contact_force=1e-6, recovery=5.0, origin=surface)
-    law(Reference(0.06, 0.0, 0.0), 0.05, force)
+    law(at(0.05, force), Motion(0.06, 0.0, 0.0))
     share = (0.06 - surface) / COST.output
     assert law.desired_force == pytest.approx(5.0 * (0.05 - surface) - 0.3 * share + 0.07)
     assert 5.0 * (reference.target - surface) - 0.3 * share + 0.07 == pytest.approx(force)

@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
+from instant import at
 
+from dexrepro.control.motion import Motion
 from dexrepro.control.target_impedance import TargetImpedance
 from dexrepro.robots.planar import PlanarChain
 
@@ -10,7 +12,7 @@ ARM = PlanarChain((0.5, 0.3, 0.1), (1.5, 0.9, 0.2))
 def test_the_tip_obeys_the_target_impedance_under_the_measured_force():
     law = TargetImpedance(model=ARM, mass=0.5, damping=2.0, stiffness=10.0, desired_force=1.0)
     q, dq, force, target = [1.0, 0.8, 0.6], [0.2, -0.4, 0.3], (1.7, 0.4), (0.1, 0.7)
-    torque = law(q, dq, force, target)
+    torque = law(at(None, force, joints=(q, dq)), Motion(target, 0.0, 0.0)).torque
     joints = np.array(ARM.acceleration(q, dq, np.add(torque, ARM.tip_torque(q, force))))
     jacobian = np.array(ARM.jacobian(q))
     ax, ay = jacobian @ joints + ARM.centripetal(q, dq)
@@ -26,7 +28,7 @@ def test_against_a_spring_the_force_settles_where_the_stiffnesses_balance():
     target = (rest - 0.05, ARM.forward(q)[1])
     for _ in range(5000):
         force = (35.0 * (rest - ARM.forward(q)[0]), 0.0)
-        torque = np.add(law(q, dq, force, target), ARM.tip_torque(q, force))
+        torque = np.add(law(at(None, force, joints=(q, dq)), Motion(target, 0.0, 0.0)).torque, ARM.tip_torque(q, force))
         dq = [v + 1e-3 * a for v, a in zip(dq, ARM.acceleration(q, dq, torque))]
         q = [a + 1e-3 * v for a, v in zip(q, dq)]
     error = force[0] - 1.0

@@ -2,7 +2,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from instant import at
 
+from dexrepro.control.motion import Motion
 from dexrepro.control.time_delay_impedance import (
     ConstantImpedance,
     GravityImpedance,
@@ -48,13 +50,13 @@ class TwoLinks:
         return np.array([-h * dq[1] * (2 * dq[0] + dq[1]), h * dq[0] ** 2])
 
 
-def run(plant, law, error=0.0, disturbance=lambda t: 0.0, duration=0.5, stiffness=0.0):
+def run(plant, law, error=0.0, disturbance=lambda t: 0.0, duration=0.5):
     """Follow a slow sine with the exact axis; returns the errors and the values of r."""
     q, dq = np.array([-error]), np.zeros(1)
     errors, filtered = [], []
     for t in np.arange(0, duration, DT):
-        desired = (np.array([1 - np.cos(t)]), np.array([np.sin(t)]), np.array([np.cos(t)]))
-        torque = law(q, dq, desired, stiffness)
+        desired = Motion(np.array([1 - np.cos(t)]), np.array([np.sin(t)]), np.array([np.cos(t)]))
+        torque = law(at(q, 0.0, dq), desired).torque
         errors.append(float(desired[0][0] - q[0]))
         filtered.append(float(law.error[0]))
         dq = dq + DT * (torque + disturbance(t) - plant.bias(q, dq)) / plant.mass
@@ -98,10 +100,10 @@ def test_estimation_absorbs_a_wrong_model():
     assert with_estimate < 0.01 * without
 
 
-@pytest.mark.parametrize("sign", ["printed", "printed_first_line"])
-def test_printed_signs_diverge(sign):
+@pytest.mark.parametrize("line", ["first_line", "second_line"])
+def test_printed_signs_diverge(line):
     plant = Axis()
-    errors, _ = run(plant, TimeDelayImpedance(plant, DT, 20.0, ConstantImpedance(0.5), sign=sign), error=1e-3)
+    errors, _ = run(plant, TimeDelayImpedance(plant, DT, 20.0, ConstantImpedance(0.5), printed=[line]), error=1e-3)
     assert abs(errors).max() > 1.0
 
 
@@ -136,7 +138,7 @@ def test_coriolis_part_is_the_christoffel_matrix_times_the_reference_velocity():
     coriolis = np.array([[-h * dq[1], -h * (dq[0] + dq[1])], [h * dq[0], 0.0]])
     e = np.array([0.02, -0.01])
     de = dq_d - dq
-    torque = law(q, dq, (q + e, dq_d, np.zeros(2)))
+    torque = law(at(q, 0.0, dq), Motion(q + e, dq_d, np.zeros(2))).torque
     assert torque == pytest.approx(model.mass_matrix(q) @ (10 * de) + coriolis @ (dq_d + 10 * e))
 
 
@@ -161,8 +163,8 @@ def test_matched_torque_filter_keeps_a_filtered_velocity_stable():
             measured = step * round(q / step)
             filtered += a * ((measured - previous) / DT - filtered)
             previous = measured
-            desired = (np.array([1 - np.cos(t)]), np.array([np.sin(t)]), np.array([np.cos(t)]))
-            torque = float(law(np.array([measured]), np.array([filtered]), desired)[0])
+            desired = Motion(np.array([1 - np.cos(t)]), np.array([np.sin(t)]), np.array([np.cos(t)]))
+            torque = float(law(at(np.array([measured]), 0.0, np.array([filtered])), desired).torque[0])
             errors.append(1 - np.cos(t) - q)
             dq += DT * (torque + 0.01) / plant.mass
             q += DT * dq
@@ -173,9 +175,8 @@ def test_matched_torque_filter_keeps_a_filtered_velocity_stable():
 
 def test_plain_impedance_holds_gravity_and_yields_to_a_push_by_its_gain():
     plant = Axis(weight=0.05)
-    law = GravityImpedance(plant, DT, 20.0, ConstantImpedance(0.5))
-    assert law(np.array([0.3]), np.zeros(1), (np.array([0.3]), np.zeros(1), np.zeros(1))) == pytest.approx(
-        plant.gravity(np.array([0.3]))
-    )
-    torque = law(np.array([0.0]), np.zeros(1), (np.array([0.01]), np.zeros(1), np.zeros(1)))
+    law = GravityImpedance(plant, 20.0, ConstantImpedance(0.5))
+    q, still = np.array([0.3]), np.zeros(1)
+    assert law(at(q, 0.0, still), Motion(q, still, still)).torque == pytest.approx(plant.gravity(q))
+    torque = law(at(still, 0.0, still), Motion(np.array([0.01]), still, still)).torque
     assert torque - plant.gravity(np.zeros(1)) == pytest.approx(0.5 * 20.0 * 0.01)

@@ -108,11 +108,20 @@ def test_the_rate_of_the_pull_is_its_derivative_along_the_error(name):
     np.testing.assert_allclose(constraint.pull_rate(z1, rate), difference, rtol=1e-6, atol=1e-9)
 
 
-@pytest.mark.parametrize("z1", [50.0, -50.0])
+@pytest.mark.parametrize("z1", [50.0, -50.0, 0.5, -0.5])
 def test_the_second_case_is_the_printed_one_also_where_its_bounds_have_one_sign(z1):
     """(6.17): K_1 of the lower bound on the right where it is positive, of the upper one on the left otherwise."""
-    lower, upper = (30.0, 75.0) if z1 > 0 else (-75.0, -30.0)
+    low, high = 0.6 * abs(z1), 1.5 * abs(z1)
+    lower, upper = (low, high) if z1 > 0 else (-high, -low)
     inner = 1 / ((lower if z1 > 0 else upper) ** 2 - z1**2)
     outer = (upper**2 if z1 > 0 else lower**2) / (z1**2 - (upper if z1 > 0 else lower) ** 2)
     expected = (outer + inner * z1**4) / (outer - inner * z1**3)
     assert printed_case_two_pull(np.array([z1]), lower, upper) == pytest.approx([expected])
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.01])
+def test_the_printed_barrier_of_the_second_case_is_the_keep_out_zone(scale):
+    """(6.16) with its flags, for bounds on both sides of the reference."""
+    z1 = scale * np.array([-200.0, -62.0, 76.0, 150.0])
+    constraint = Constraint(False, 75.0 * scale, -60.0 * scale)
+    assert case_two_value(z1, -60.0 * scale, 75.0 * scale) == pytest.approx(constraint.value(z1[:, None]))

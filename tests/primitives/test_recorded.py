@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from time import process_time
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dexrepro.primitives.recorded import demonstrations, read_path, resampled
+from dexrepro.primitives.recorded import Format, demonstrations, read_path, resampled
 
 numbers = st.integers(-100_000, 100_000).map(lambda thousandths: thousandths / 1000)
 instants = st.lists(st.floats(1e-3, 10), min_size=2, max_size=30).map(lambda steps: np.cumsum([0.0, *steps]))
@@ -36,6 +37,7 @@ def test_resampling_reproduces_linear_motion(time, start, speed) -> None:
 
 
 ROWS = [f"{2 + 0.1 * k:.1f},{k},{2 * k}" for k in range(10)]
+WANTED = np.column_stack([np.arange(10), 2 * np.arange(10)])
 
 
 def write(folder: Path, rows: list[str], header: str = "time,x,y\n") -> str:
@@ -48,9 +50,159 @@ def write(folder: Path, rows: list[str], header: str = "time,x,y\n") -> str:
 def test_lengths_arrive_in_metres_and_time_starts_at_zero(
     tmp_path: Path, header: str, unit: str, factor: float
 ) -> None:
-    time, position = read_path(write(tmp_path, ROWS, header), unit, axes=2)
+    time, position = read_path(write(tmp_path, ROWS, header), Format(unit), axes=2)
     assert time == pytest.approx(np.arange(10) * 0.1)
-    assert position == pytest.approx(factor * np.column_stack([np.arange(10), 2 * np.arange(10)]))
+    assert position == pytest.approx(factor * WANTED)
+
+
+def rows(form: str) -> str:
+    return "\n".join(form.format(t=f"{2 + 0.1 * k:.1f}", x=f"{k}.0", y=f"{2 * k}.0") for k in range(10)) + "\n"
+
+
+PLAIN = rows("{t},{x},{y}")
+COMMAS = rows("{t};{x};{y}").replace(".", ",")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# time,x,y\n" + rows("{t} {x} {y}"),
+        "% recorded by hand\n%time,x,y\n" + PLAIN,
+        "// t;x;y\n" + COMMAS,
+        "sep=;\ntime;x;y\n" + COMMAS,
+        rows("{t}\t{x}\t{y}").replace(".", ","),
+        rows("{t} {x}  {y}").replace(".", ","),
+        'time,x,y\n' + rows('"{t}","{x}","{y}"'),
+        'time,x,y\n' + rows('"{t}","{x}","{y}"').replace(".", ","),
+        "t,x,y\n" + PLAIN,
+        "time [s],x [m],y [m]\n" + PLAIN,
+        "Timestamp (s); X (m); Y (m)\n" + COMMAS,
+        "time_s,x_m,y_m\n" + PLAIN,
+        "time [s] x [m] y [m]\n" + rows("{t} {x} {y}"),
+        "time,x,y\ns,m,m\n" + PLAIN,
+        "y,x,time\n" + rows("{y},{x},{t}"),
+        "%time,field.header.seq,field.header.stamp,field.pose.position.x,field.pose.position.y,field.pose.position.z,"
+        "field.pose.orientation.x,field.pose.orientation.y\n" + rows("{t},7,9,{x},{y},1,1,1"),
+        "pos_x,pos_y,vel_x,vel_y,time\n" + rows("{x},{y},5,5,{t}"),
+        "time,x,y,,\n" + rows("{t},{x},{y},,"),
+        "time,x,y\n\n" + PLAIN + ",,\n,,\n\n",
+        "time,x,y\n" + PLAIN.replace("\n2.5", "\n,,\n# a break\n2.5"),
+        "\n\ntime,x,y\r\n" + PLAIN.replace("\n", "\r\n"),
+        "id,time,x,y,comment\n" + rows("a,{t},{x},{y},fine"),
+        rows("+{t}e0,{x},{y}"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_files_of_many_makes_hold_the_same_path(tmp_path: Path, text: str, encoding: str) -> None:
+    (tmp_path / "path.csv").write_bytes(text.encode(encoding))
+    time, position = read_path(str(tmp_path / "path.csv"), axes=2)
+    assert time == pytest.approx(np.arange(10) * 0.1)
+    assert position == pytest.approx(WANTED)
+
+
+@pytest.mark.parametrize(
+    ("header", "style", "factor", "second"),
+    [
+        ("time [ms],x [mm],y [mm]", Format(), 1e-3, 1e-3),
+        ("time,x [inch],y [in]", None, None, None),
+        ("time,x [inch],y [inch]", Format(time_unit="ms"), 0.0254, 1e-3),
+        ("t_ms,x_cm,y_cm", Format("cm", "ms"), 1e-2, 1e-3),
+        ("time,x,y", Format("mm", "ms"), 1e-3, 1e-3),
+        ("time,x [px],y [px]", Format("mm", "s"), 1e-3, 1.0),
+    ],
+)
+def test_units_come_from_the_header_or_from_who_knows_better(
+    tmp_path: Path, header: str, style: Format | None, factor: float, second: float
+) -> None:
+    file = write(tmp_path, [f"{100 * k},{k},{2 * k}" for k in range(10)], header + "\n")
+    if style is None:
+        with pytest.raises(ValueError, match="its header gives x, y in inch, in"):
+            read_path(file, axes=2)
+        return
+    time, position = read_path(file, style, axes=2)
+    assert time[-1] == pytest.approx(900 * second)
+    assert position[-1] == pytest.approx([9 * factor, 18 * factor])
+
+
+@pytest.mark.parametrize(
+    ("header", "style", "sentence"),
+    [
+        ("time,x [px],y [px]", Format(), "its header gives x in px; set unit= to m, cm, mm, inch"),
+        ("time,x [mm],y [mm]", Format("cm"), "its header gives x in mm, not in cm; set unit=mm"),
+        ("time [min],x,y", Format(), "its header gives time in min; set time_unit= to s, ms, us, ns"),
+        ("time,x1,y1", Format(), "its columns are time, x1, y1; they must be time, x, y"),
+        ("time,left.x,right.x,y", Format(), "its columns left.x, right.x could both be x; rename one"),
+    ],
+)
+def test_a_header_that_leaves_a_doubt_gets_one_sentence(
+    tmp_path: Path, header: str, style: Format, sentence: str
+) -> None:
+    rows = [f"{0.1 * k},{k},{2 * k}" + ",0" * (header.count(",") - 2) for k in range(10)]
+    with pytest.raises(ValueError, match=sentence):
+        read_path(write(tmp_path, rows, header + "\n"), style, axes=2)
+
+
+@pytest.mark.parametrize(
+    ("stamps", "sentence"),
+    [
+        ([0, *(2233.5 + 0.05 * np.arange(59))], "line 3 comes 2233.5 s after the line before, where the usual step is"),
+        ([*(0.05 * np.arange(30)), *(9 + 0.05 * np.arange(30))], "line 32 comes 7.55 s after .* set time_unit="),
+        (50.0 * np.arange(60), "line 3 comes 50 s after the line before, and all take 2950 s; set time_unit=ms if"),
+        (1.7e18 + 5e7 * np.arange(60), "set time_unit=ns if that is the unit of its stamps, time_unit=s if it is"),
+        (1.7e15 + 5e4 * np.arange(60), "set time_unit=us if that"),
+        (np.arange(100), "line 3 comes 1 s after the line before, and all take 99 s; set time_unit=ms"),
+        (1e-6 * np.arange(60), "it lasts 5.9e-05 s from line 2 to 61; time_unit= must be another"),
+    ],
+)  # fmt: skip
+def test_stamps_that_are_no_seconds_of_one_movement_get_one_sentence(tmp_path: Path, stamps, sentence: str) -> None:
+    file = write(tmp_path, [f"{t!r},{k},0" for k, t in enumerate(map(float, stamps))])
+    with pytest.raises(ValueError, match=sentence):
+        read_path(file, axes=2)
+
+
+@pytest.mark.parametrize(
+    "stamps",
+    [
+        1.7e9 + 0.05 * np.arange(60),  # since 1970
+        np.cumsum(np.tile([0.001, 0.05], 30)),  # in pairs, as networks deliver
+        [*(0.005 * np.arange(200)), *(1.3 + 0.005 * np.arange(200))],  # the pen rests for a moment
+        5.0 * np.arange(10),  # ten places of a slow task
+    ],
+)
+def test_unequal_steps_and_far_stamps_are_read(tmp_path: Path, stamps) -> None:
+    file = write(tmp_path, [f"{t:.6f},{k},0" for k, t in enumerate(stamps)])
+    assert read_path(file, axes=2)[0][-1] == pytest.approx(stamps[-1] - stamps[0], abs=1e-5)
+    assert read_path(write(tmp_path, [f"{50 * k},{k},0" for k in range(60)]), Format(time_unit="s"), 2)[0][-1] == 2950
+
+
+def test_samples_of_one_instant_are_dropped_on_request(tmp_path: Path) -> None:
+    file = write(tmp_path, [*ROWS[:4], ROWS[3].replace(",3,", ",9,"), *ROWS[4:]])
+    with pytest.raises(ValueError, match=r"not increase at line 6 \(duplicates=drop keeps the first"):
+        read_path(file, axes=2)
+    assert read_path(file, Format(duplicates="drop"), axes=2)[1] == pytest.approx(WANTED)
+    with pytest.raises(ValueError, match=r"not increase at line 6$"):
+        read_path(write(tmp_path, [*ROWS[:5], ROWS[2], *ROWS[5:]][1:]), Format(duplicates="drop"), axes=2)
+
+
+def test_a_file_in_eight_bits_is_read_when_its_encoding_is_named(tmp_path: Path) -> None:
+    (tmp_path / "path.csv").write_bytes(("# größe\n" + "\n".join(ROWS)).encode("latin-1"))
+    with pytest.raises(
+        ValueError, match=r"cannot read .*path.csv': line 1 is not UTF-8; save it as UTF-8 or name its enc"
+    ):
+        read_path(str(tmp_path / "path.csv"), axes=2)
+    assert read_path(str(tmp_path / "path.csv"), Format(encoding="cp1252"), 2)[1] == pytest.approx(WANTED)
+    with pytest.raises(ValueError, match="encoding = latin-17 is not allowed"):
+        read_path(str(tmp_path / "path.csv"), Format(encoding="latin-17"), 2)
+
+
+def test_a_million_rows_take_less_than_two_seconds(tmp_path: Path) -> None:
+    stamps = np.arange(1_000_000)
+    text = "\n".join(f"{k / 1000},{k},0.5" for k in stamps.tolist())
+    (tmp_path / "long.csv").write_text("time,x,y\n" + text + "\n,,\n")
+    start = process_time()
+    time, position = read_path(str(tmp_path / "long.csv"), axes=2)
+    assert process_time() - start < 2
+    assert len(position) == len(time) == 1_000_000
 
 
 @pytest.mark.parametrize(
@@ -59,18 +211,22 @@ def test_lengths_arrive_in_metres_and_time_starts_at_zero(
         (
             [*ROWS[:4], "2.4,nan,1", *ROWS[5:]],
             "time,x,y\n",
-            "line 6 of .* holds '2.4,nan,1': every entry must be a fin",
+            "line 6 holds '2.4,nan,1': every entry must be a fin",
         ),
-        ([*ROWS[:4], "2.4,one,1", *ROWS[5:]], "", "line 5 of .* holds '2.4,one,1'"),
+        ([*ROWS[:4], "2.4,one,1", *ROWS[5:]], "", "line 5 holds '2.4,one,1'"),
+        ([*ROWS[:4], "2.4,,1", *ROWS[5:]], "time,x,y\n", "line 6 holds '2.4,,1'"),
+        ([*ROWS[:4], "2.4,3", *ROWS[5:]], "time,x,y\n", "line 6 holds '2.4,3'"),
+        ([*ROWS[:4], "2.4,3", *ROWS[5:]], "", "line 5 has 2 numbers"),
         ([*ROWS[:4], ROWS[3], *ROWS[5:]], "time,x,y\n", "does not increase at line 6"),
         (ROWS[:7], "time,x,y\n", "has 7 samples; there must be at least 8"),
         ([], "", "has 0 samples"),
-        ([row + ",0" for row in ROWS], "", "line 1 of .* has 4 numbers; it must have time, x, y"),
-        (ROWS, "time,y,x\n", "columns of .* are time, y, x; they must be time, x, y"),
+        ([], "time,x,y\n", "has 0 samples"),
+        ([row + ",0" for row in ROWS], "", "line 1 has 4 numbers; it must have time, x, y"),
+        ([f"{0.1 * k},1,2" for k in range(10)], "", "it never moves: all its samples are at one place"),
     ],
 )
 def test_a_file_that_cannot_be_used_gets_one_sentence(tmp_path: Path, rows, header: str, sentence: str) -> None:
-    with pytest.raises(ValueError, match=sentence):
+    with pytest.raises(ValueError, match=f"path.csv': .*{sentence}"):
         read_path(write(tmp_path, rows, header), axes=2)
 
 
@@ -78,19 +234,23 @@ def test_a_file_or_unit_that_is_not_there_gets_one_sentence(tmp_path: Path) -> N
     with pytest.raises(ValueError, match=r"cannot read 'no.csv': No such file"):
         read_path("no.csv")
     with pytest.raises(ValueError, match="unit = ft is not allowed: it must be one of m, cm, mm, inch"):
-        read_path(write(tmp_path, ROWS), "ft")
+        read_path(write(tmp_path, ROWS), Format("ft"))
 
 
 def test_several_files_take_turns(tmp_path: Path) -> None:
     for number in (1, 2):
         (tmp_path / f"{number}.csv").write_text("\n".join(f"{k},{number * k},0" for k in range(8)))
-    paths = demonstrations(str(tmp_path / "*.csv"), 3, 20, "m", axes=2)
+    paths = demonstrations(str(tmp_path / "*.csv"), 3, 20, Format(), axes=2)
     assert [path[-1, 0] for path in paths] == pytest.approx([7, 14, 7])
     with pytest.raises(ValueError, match="2 files are more than the 1 demonstrations"):
-        demonstrations(str(tmp_path / "*.csv"), 1, 20, "m", axes=2)
+        demonstrations(str(tmp_path / "*.csv"), 1, 20, Format(), axes=2)
 
 
-def test_a_file_saved_by_a_spreadsheet_is_read(tmp_path: Path) -> None:
-    rows = "\n".join(f"{k},{k},0" for k in range(8))
-    (tmp_path / "saved.csv").write_text(f"time,x,y\n{rows}\n", encoding="utf-8-sig")
-    assert read_path(str(tmp_path / "saved.csv"), "m", 2)[1][-1].tolist() == [7, 0]
+@pytest.mark.parametrize(
+    "name", ["letter (1).csv", "Übung_größe.csv", "a=b.csv", "trial[1].csv", "Öl & Büro (neu)/#1.csv"]
+)
+def test_a_name_is_a_name_before_it_is_a_pattern(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("\n".join(ROWS))
+    (path,) = demonstrations(str(tmp_path / name), 1, 20, Format(), axes=2)
+    assert path[-1] == pytest.approx([9, 18])

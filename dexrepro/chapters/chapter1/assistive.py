@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter1.followers import ComputedTorque, Follower
+from dexrepro.control.contract import HoldingLaw
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.control.potential_field import PotentialField
+from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.plant import Sense
 
 Array = NDArray[np.float64]
@@ -23,10 +23,10 @@ class AssistiveFollower:
     """
 
     def __init__(
-        self, follower: Follower, field: PotentialField, latch: ContactLatch, law: Any, *, speed_limit: float
+        self, follower: Follower, field: PotentialField, latch: ContactLatch, law: HoldingLaw, *, speed_limit: float
     ) -> None:
-        self.follower, self.field, self.latch, self.law = follower, field, latch, law
-        self.step = speed_limit * follower.dt
+        self.follower, self.field, self.latch = follower, field, latch
+        self.law = HoldingDrive(law, speed_limit * follower.dt)
         self.phase, self.switches, self.force, self.opening = 0, 0, 0.0, 0.0
 
     def reset(self, position: Array, tip: Array) -> None:
@@ -42,15 +42,13 @@ class AssistiveFollower:
         holding = self.latch(self.force)
         if holding and not self.phase:
             self.contact = float((tip - partner) @ axis)
-            self.law.reset(0.0)
-            self.reference = 0.0
+            self.law.reset(sense.time, 0.0)
         elif self.phase and not holding:
             self.field.reset(tip)
         self.switches += int(holding != bool(self.phase))
         self.phase = int(holding)
         if not holding:
             return self.follower.go(sense, self.field(partner, axis, measured) + self.opening * axis, rotation)
-        wanted = float(self.law(float((tip - partner) @ axis) - self.contact, self.force))
-        self.reference += min(self.step, max(-self.step, wanted - self.reference))
-        target = partner + (self.contact + self.reference + self.opening) * axis
+        reference = float(self.law(sense.time, float((tip - partner) @ axis) - self.contact, self.force))
+        target = partner + (self.contact + reference + self.opening) * axis
         return self.follower.go(sense, target, rotation)

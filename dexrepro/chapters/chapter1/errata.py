@@ -75,7 +75,7 @@ ERRATA = (
         "definition and the laws lose contact at once, whatever the direction of z. The laws are consistent among "
         "themselves, and with both compared controllers, for the opposite definitions.",
         "e_f = f_d - f_z and e_z = z_r - z_A, all laws as printed.",
-        f"{TRACKING}.law.error=printed",
+        f"{TRACKING}.law.printed=true",
         (f"{TRACKING}.c1_printed.rmse", f"{TRACKING}.c1_proposed.rmse", "hold_and_move.t1_printed.rmse"),
     ),
     Erratum(
@@ -91,7 +91,7 @@ ERRATA = (
         "error",
         "Consequence of E1.10: with the printed definitions the cross terms of dV/dt do not cancel.",
         "As E1.10; (1.44) then stands as printed.",
-        "lyapunov.error=printed",
+        "lyapunov.printed=true",
         ("lyapunov.ideal.rising", "lyapunov.printed.rising"),
     ),
     Erratum(

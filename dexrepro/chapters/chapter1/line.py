@@ -6,14 +6,21 @@ Those of ``carry`` are the distance between the followers, as in Eq. (1.33).
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from dexrepro.control.contract import Measured
 from dexrepro.physics.soft_object import Cushion
 
 Array = NDArray[np.float64]
+
+
+def at(position: Any, force: Any) -> Measured[Any]:
+    """What a holding law that needs neither time nor velocity is told: displacement [m] and force [N]."""
+    return Measured(math.nan, position, math.nan, force)
 
 
 def press(
@@ -29,13 +36,14 @@ def press(
     n = len(partner)
     force, position = np.empty((n, batch)), np.empty((n, batch))
     x = np.zeros(batch)
-    law.reset(x + origin)
+    law.reset(at(x + origin, 0.0))
     share = dt / np.maximum(np.asarray(lag, float) + dt, dt)
     for k in range(n):
         f = stiffness[k] * (partner[k] - x)
         f = np.maximum(f, 0.0) if unilateral else f
         force[k], position[k] = f, x
-        command = law(x + origin, f) if target is None else law(x + origin, f, target[k] + origin)
+        known = () if target is None else (target[k] + origin,)
+        command = law(at(x + origin, f), *known)
         x = np.minimum(np.maximum(x + share * (command - origin - x), -guard), guard)
     return {"force": force, "position": position}
 
@@ -59,13 +67,13 @@ def carry(
     velocity = zero
     sensed, columns = np.zeros((n // period + 2, batch)), np.arange(batch)
     late = np.broadcast_to(delay, batch)
-    law.reset(zero)
+    law.reset(at(zero, 0.0))
     for k in range(n):
         if k % period == 0:
             sample = k // period
             sensed[sample] = force[k - 1] + noise[sample] if k else zero
             start = command
-            wanted = law(start, sensed[np.maximum(sample - late, 0), columns])
+            wanted = law(at(start, sensed[np.maximum(sample - late, 0), columns]))
             command = start + np.clip(wanted - start, -speed * dt * period, speed * dt * period)
         step = (k % period + 1) / period
         goal = start + step * (command - start)

@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 
 from dexrepro.arrays import Rng
 from dexrepro.control.computed_torque import ComputedTorque
+from dexrepro.control.contract import Measured
 from dexrepro.control.holding_line import HoldingLineRegulation
+from dexrepro.control.motion import Motion
 from dexrepro.experiment import Config, Recording
+from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
@@ -133,7 +136,8 @@ class GripperServo:
         if self._sample % 2 == 0:
             q, rates = sense.position, inverse.velocity
             ahead = self._reference + (self._sample % 4 + 1) * self._step * rates
-            torque = self._law(ahead, q, sense.velocity, rates)
+            measured = Measured(sense.time, q, sense.velocity, np.zeros(len(q)))
+            torque = self._law(measured, Motion(ahead, rates, np.zeros(len(q)))).torque
             self._torque = (torque - self._model.tip_torque(q, sense.felt)).tolist()
         self._sample += 1
         return self._torque
@@ -167,7 +171,7 @@ class Follower:
     """
 
     def __init__(self, config: Config, arm: Arm) -> None:
-        self._servo, self._law = GripperServo(config, arm, FACING["left"]), config.law
+        self._servo, self._law = GripperServo(config, arm, FACING["left"]), HoldingDrive(config.law)
         self._approach, self._threshold = config.approach_speed * config.step, config.contact_force
         self._regulations = [HoldingLineRegulation(gain=config.regulation) for _ in "xz"]
         self.reference = self._home = start(config, "follower")
@@ -184,9 +188,9 @@ class Follower:
             if math.sqrt(fx * fx + fy * fy + fz * fz) > self._threshold:
                 self.contact_time = sense.time
                 self._home[1] = sense.tip[1]
-                self._law.reset(0.0)
+                self._law.reset(sense.time, 0.0)
         else:
-            along = self._law(sense.tip[1] - self._home[1], fy)
+            along = self._law(sense.time, sense.tip[1] - self._home[1], fy)
             (x, z), home = (law(force) for law, force in zip(self._regulations, (fx, fz))), self._home
             self.reference = np.array((home[0] + x, home[1] + along, home[2] + z))
         return self._servo(sense, self.reference)

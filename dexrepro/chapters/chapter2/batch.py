@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from dexrepro.control.contract import Measured
 from dexrepro.control.force_control import ForceControl, IntegralForceControl
 from dexrepro.control.holding_line import HoldingLineRegulation
 from dexrepro.control.holding_reference import ImpedanceReference
@@ -88,7 +89,7 @@ def _loop(runs: pd.DataFrame, config: Any, edges: Array, noise: np.random.Genera
     home_x, home_y = plant.contact()[0]
     low, high = config.follower.workspace
     for part, law in laws:
-        law.reset(home_x[1, part])
+        law.reset(at(home_x[1, part], 0.0))
     joints: Any = tuple(plant.position)
     wanted = plant.position.copy()
     first, swing_rate = p["trajectory"] == 1, 2 * math.pi / config.period
@@ -103,7 +104,7 @@ def _loop(runs: pd.DataFrame, config: Any, edges: Array, noise: np.random.Genera
         lost += magnitude <= 0
         measured = force if noise is None else force + p["noise"] * noise.standard_normal((2, 1))
         for part, law in laws:
-            reference[part] = law(x[1, part], measured[0, part])
+            reference[part] = law(at(x[1, part], measured[0, part]))
         np.minimum(np.maximum(reference, low, out=reference), high, out=reference)
         swing = config.leader.amplitude * math.sin(swing_rate * i * dt)
         leader_x = home_x[0] + np.where(first, swing, config.leader.drift * i * dt)
@@ -140,6 +141,11 @@ def _plant(p: Mapping[str, Any], config: Any) -> PlanarPairs:
         dt=config.step,
         unilateral=p["unilateral"].astype(bool),
     )
+
+
+def at(position: Any, force: Any) -> Measured[Any]:
+    """What a holding law that needs neither time nor velocity is told: position [m] and force [N]."""
+    return Measured(math.nan, position, math.nan, force)
 
 
 def grouped_laws(runs: pd.DataFrame, dt: float) -> list[tuple[slice, Any]]:

@@ -6,14 +6,19 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from dexrepro.control.contract import Command, HoldingLaw, Measured, report
 from dexrepro.control.holding_line import HoldingLineRegulation
-from dexrepro.control.joint_pd import JointPD
+from dexrepro.control.motion import Motion
 from dexrepro.control.target_impedance import TargetImpedance
 from dexrepro.experiment import Config, Recording
+from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic, Ends
 from dexrepro.physics.plant import Controller
 from dexrepro.physics.world import World
 from dexrepro.robots.planar import Links, PlanarChain, planar
+
+REST = (0.0, 0.0)
+ESTIMATE = ("rest_position", "stiffness", "rest_velocity")
 
 
 def scene(config: Config) -> World:
@@ -36,19 +41,17 @@ def simulate(config: Config) -> Recording:
         return run(world, config, config.law, record_every=1)
 
 
-def run(world: World, config: Config, law: Any, record_every: int = 5) -> Recording:
+def run(world: World, config: Config, law: HoldingLaw, record_every: int = 5) -> Recording:
     """Run the pair; besides the World's channels, records the follower's ``reference`` and its ``estimate`` if any.
 
-    law: makes x_1,r from the follower's own position and force, see ``dexrepro.control.holding_reference``.
     ``reference``: x_1,r along the holding line before the workspace bounds, and the lateral position asked for [m].
-    ``estimate``: rest position [m], stiffness [N/m] and velocity of that position [m/s] as believed.
+    ``estimate``: rest position [m], stiffness [N/m] and velocity of that position [m/s] as the law believes.
     The run ends once the force is that of the fully squeezed object.
     """
     follower = Follower(config, law)
     probes: dict[str, Callable[[], Any]] = {"reference": lambda: follower.reference}
-    estimation = getattr(law, "estimation", None)
-    if estimation is not None:
-        probes["estimate"] = lambda: (estimation.position, estimation.stiffness, estimation.velocity)
+    if set(ESTIMATE) <= report(law).keys():
+        probes["estimate"] = lambda: tuple(map(report(law).get, ESTIMATE))
     contact: Any = world.elements[0]
     limit = config.stiffness * config.rest_length
 
@@ -75,8 +78,7 @@ class TipServo:
 
     def __init__(self, config: Config, base: tuple[float, float]) -> None:
         self.chain = PlanarChain(config.arm.lengths, config.arm.masses, base)
-        # One law a joint: plain floats are several times faster here than arrays of three.
-        self._laws = [JointPD(stiffness=k, damping=d) for k, d in zip(config.arm.stiffness, config.arm.damping)]
+        self._stiffness, self._brake = config.arm.stiffness, config.arm.damping
         self._damping = config.arm.ik_damping
         self._joints: Any = None
 
@@ -85,7 +87,9 @@ class TipServo:
         q, (fx, fy, _) = sense.angles, sense.felt
         self._joints = self.chain.approach(self._joints or q, target, self._damping)
         contact = self.chain.tip_torque(q, (fx, fy), links)
-        return [law(r, a, v) - t for law, r, a, v, t in zip(self._laws, self._joints, q, sense.rates, contact)]
+        # Plain floats are several times faster here than arrays of three.
+        parts = zip(self._stiffness, self._joints, q, self._brake, sense.rates, contact)
+        return [k * (r - a) - d * v - t for k, r, a, d, v, t in parts]
 
 
 class ImpedanceServo:
@@ -95,9 +99,9 @@ class ImpedanceServo:
         self.chain = PlanarChain(config.arm.lengths, config.arm.masses, base)
         self._law = TargetImpedance(model=self.chain, desired_force=config.desired_force, **config.impedance)
 
-    def __call__(self, sense: Any, target: tuple[float, float], links: Links | None = None) -> list[float]:
-        fx, fy, _ = sense.felt
-        return self._law(sense.angles, sense.rates, (fx, fy), target)
+    def __call__(self, sense: Any, target: tuple[float, float], links: Links | None = None) -> Command:
+        measured = Measured(sense.time, math.nan, math.nan, sense.felt[:2], sense.angles, sense.rates)
+        return self._law(measured, Motion(target, REST, REST))
 
 
 class Leader:
@@ -118,23 +122,23 @@ class Follower:
     reference: the last x_1,r and y_1,d [m].
     """
 
-    def __init__(self, config: Config, law: Any) -> None:
+    def __init__(self, config: Config, law: HoldingLaw) -> None:
         servo = ImpedanceServo if config.get("realisation") == "impedance" else TipServo
-        self._law, self._servo = law, servo(config, config.follower.base)
-        sign = config.follower.get("regulation_sign", -1.0)
-        self._regulation = HoldingLineRegulation(gain=config.follower.regulation, sign=sign)
+        self._law, self._servo = HoldingDrive(law), servo(config, config.follower.base)
+        printed = config.follower.get("regulation_printed", True)
+        self._regulation = HoldingLineRegulation(gain=config.follower.regulation, printed=printed)
         self._low, self._high = config.follower.workspace
         self._home: tuple[float, float] | None = None
         self.reference = (0.0, 0.0)
 
-    def __call__(self, sense: Any) -> list[float]:
+    def __call__(self, sense: Any) -> Any:
         links = self._servo.chain.links(sense.angles)
         x, y = self._servo.chain.forward(sense.angles, links)
         if self._home is None:
             self._home = x, y
-            self._law.reset(x)
+            self._law.reset(sense.time, x)
         fx, fy, _ = sense.felt
-        along, across = self._law(x, fx), self._home[1] + self._regulation(fy)
+        along, across = self._law(sense.time, x, fx), self._home[1] + float(self._regulation(fy))
         self.reference = along, across
         low, high = self._low, self._high
         return self._servo(sense, (low if along < low else high if along > high else along, across), links)

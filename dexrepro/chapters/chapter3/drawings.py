@@ -19,7 +19,7 @@ def describe(config: Config) -> str:
     if config.straight:
         parts.append("straight to the target")
     parts.append(f"K_R {config.null_space.stiffness:g} N/m" if config.null_space.enabled else "no null-space torque")
-    parts.append("no network" if config.law.network is None else f"weights by {config.adaptation} e2")
+    parts.append("no network" if config.law.get("network") is None else f"weights by {config.adaptation} e2")
     return ", ".join(parts)
 
 

@@ -10,9 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter3.scene import ARM, ELBOW, WRIST, gripper_arm
+from dexrepro.control.contract import Command, Measured, report
+from dexrepro.control.motion import Motion, quintic
 from dexrepro.control.null_space import consistent_damping, consistent_inverse, damped_inverse
 from dexrepro.control.remote_centre import centre_force, closest_point, printed_centre_force, tool_axis
 from dexrepro.experiment import Config, Recording
+from dexrepro.physics.drive import JointDrive
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.world import World
@@ -96,15 +99,16 @@ class Reach:
     def __init__(self, config: Config, centre: Callable[[float], Array], applied: Callable[[], Any]) -> None:
         self.arm = gripper_arm(config.gripper)
         self.model = RigidBodyModel(self.arm, mass_error=config.model.mass_error)
-        self.config, self.law, self.observer = config, config.law, config.observer
+        self.config, self.drive, self.observer = config, JointDrive(config.law), config.observer
+        if config.adaptation == "task":  # what of e2 moves the task drives the weights
+            config.law.part = self._moving
         self._centre, self._applied = centre, applied
         self._reference: Reference | None = None
         self._joints: Array | None = None
         self.tracking = 0.0
         self.observed = np.zeros(7)
-        self.nodes = 0
 
-    def __call__(self, sense: Sense) -> tuple[Array, Array]:
+    def __call__(self, sense: Sense) -> Command:
         config, q, dq = self.config, sense.position, sense.velocity
         centre, state = self._centre(sense.time), State(self.arm, q)
         mass, bias, gravity = self.model.mass_matrix(q), self.model.bias(q, dq), self.model.gravity(q)
@@ -114,22 +118,26 @@ class Reach:
         wanted = self._reference(sense.time, centre)
         self.tracking = math.dist(state.tip, wanted[0])
         error, jacobian, rate = self._task(state, wanted)
-        inverse, projector = consistent_inverse(mass, jacobian)
+        self._jacobian = jacobian
+        self._inverse, projector = consistent_inverse(mass, jacobian)
         if config.reference == "joint":
-            e1, desired = self._joint_error(q, wanted)
+            joints, joint_rate = self._solved(q, wanted)
         else:
-            back = inverse if config.task == "position" else damped_inverse(jacobian, config.damping)
-            e1, desired = back @ error, back @ rate
-        torque, damping = self.law(e1, q, dq, desired)
-        self.law.adapt(inverse @ (jacobian @ self.law.error) if config.adaptation == "task" else None)
-        if self.law.network is not None:
-            self.nodes = self.law.network.basis.nodes
-        torque += config.model.gravity_compensation * gravity
+            back = self._inverse if config.task == "position" else damped_inverse(jacobian, config.damping)
+            joints, joint_rate = q - back @ error, back @ rate
+        desired = Motion(joints, joint_rate, np.zeros(len(q)))
+        torque, damping, _ = self.drive.command(Measured(sense.time, q, dq, self.observed), desired)
+        torque = torque + config.model.gravity_compensation * gravity
         if config.null_space.enabled:
             torque += projector @ self._subtask(state, centre)
-        if config.null_space.get("consistent_damping"):
-            damping = consistent_damping(damping, jacobian, inverse, projector)
-        return torque, damping
+        if config.null_space.get("consistent_damping") and damping is not None:
+            damping = consistent_damping(damping, jacobian, self._inverse, projector)
+        return Command(torque, damping)
+
+    def _moving(self, error: Array) -> Array:
+        """What of a joint rate (n,) moves the task."""
+        moving: Array = self._inverse @ (self._jacobian @ error)
+        return moving
 
     def _task(self, state: State, wanted: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array]:
         """Task error xi (m,), Jacobian (m, n) and desired rate (m,)."""
@@ -163,14 +171,14 @@ class Reach:
         turn = -((angle + math.pi / 2) % math.pi - math.pi / 2)
         return min(max(turn, -0.1), 0.1)
 
-    def _joint_error(self, q: Array, wanted: tuple[Array, Array, Array, Array]) -> tuple[Array, Array]:
-        """e1 = q - q_d and dq_d, with q_d from closed-loop inverse kinematics."""
+    def _solved(self, q: Array, wanted: tuple[Array, Array, Array, Array]) -> tuple[Array, Array]:
+        """q_d and dq_d from closed-loop inverse kinematics."""
         if self._joints is None:
             self._joints = q.copy()
         error, jacobian, rate = self._task(State(self.arm, self._joints), wanted)
         desired = damped_inverse(jacobian, self.config.damping) @ (rate - 20.0 * error)
         self._joints = self._joints + self.config.step * desired
-        return q - self._joints, desired
+        return self._joints, desired
 
     def _subtask(self, state: State, centre: Array) -> Array:
         """tau_sub (n,) [N m], Eq. (3.30): pull the nearest point of the arm to the centre, take out what pushes it."""
@@ -189,12 +197,6 @@ class Reach:
         return torque - self.observed if null.compensate else torque
 
 
-def quintic(time: float, duration: float) -> tuple[float, float]:
-    """Minimum-jerk share s and its rate [1/s] at a time [s]."""
-    u = min(max(time / duration, 0.0), 1.0)
-    return u**3 * (10 - 15 * u + 6 * u * u), 30 * u * u * (1 - u) ** 2 / duration
-
-
 def run(
     world: World,
     config: Config,
@@ -208,7 +210,7 @@ def run(
     probes = {
         "tracking": lambda: reach.tracking,
         "observed": lambda: reach.observed,
-        "nodes": lambda: reach.nodes,
+        "nodes": lambda: report(config.law).get("nodes", 0),
         "contact": touching,
     }
     try:

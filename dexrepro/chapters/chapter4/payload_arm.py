@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from dexrepro.chapters.chapter4.two_link import Reference
-from dexrepro.control.global_adaptive import GlobalAdaptiveControl
+from dexrepro.control.contract import Command, Law, build, report
+from dexrepro.control.motion import Sampled, via_points
 from dexrepro.experiment import Config, Recording
-from dexrepro.networks import AdaptiveNetwork, GrowingGaussians, Lattice
+from dexrepro.networks import AdaptiveNetwork
+from dexrepro.physics.drive import EndPointDrive, limited
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
@@ -26,34 +28,7 @@ VIEW = Camera(target=(0.42, -0.45, 0.15), distance=1.5, yaw=-60.0, pitch=-20.0)
 EVERY = 2  # physics steps between recorded samples
 
 
-class TipKinematics:
-    """End point (3,) of the gripper as the robot reports it, and its Jacobian (3, 7); torso frame."""
-
-    def __init__(self, model: RigidBodyModel) -> None:
-        self._model = model
-        self.tip = np.zeros(3)
-
-    def position(self, q: Array) -> Array:
-        return self.tip
-
-    def jacobian(self, q: Array) -> Array:
-        return self._model.jacobian(q)[:3]
-
-
-def via_points(points: Sequence[ArrayLike], times: Sequence[float], step: float) -> Reference:
-    """Minimum-jerk segments from point to point [m], each of a duration [s], at rest at every point."""
-    parts: list[tuple[Array, Array, Array]] = []
-    for start, end, duration in zip(points[:-1], points[1:], times, strict=True):
-        s = (np.arange(round(duration / step)) * step / duration)[:, None]
-        span = np.asarray(end, dtype=float) - np.asarray(start, dtype=float)
-        shape = 10 * s**3 - 15 * s**4 + 6 * s**5
-        rate = (30 * s**2 - 60 * s**3 + 30 * s**4) / duration
-        bend = (60 * s - 180 * s**2 + 120 * s**3) / duration**2
-        parts.append((start + shape * span, rate * span, bend * span))
-    return Reference(*(np.concatenate(columns) for columns in zip(*parts)))
-
-
-def motions(config: Config) -> Iterator[tuple[int, Reference]]:
+def motions(config: Config) -> Iterator[tuple[int, Sampled]]:
     """The runs of a case: phases I and II if it trains, then the nine trajectories from A, B, C to D, E, F."""
     task = config.task
     if config.mode in ("reuse", "frozen"):
@@ -89,33 +64,21 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
 class Pilot:
     """Drives the arm with a law along a reference; the torques that hold the arm alone are added, as its maker does."""
 
-    def __init__(
-        self, law: GlobalAdaptiveControl, tip: TipKinematics, model: RigidBodyModel | None, reference: Reference
-    ) -> None:
-        self.law, self.tip, self.model, self.reference = law, tip, model, reference
-        self.network: Any = law.network
-        self._period = 0
-        law.reset()
+    def __init__(self, law: Law, model: RigidBodyModel, compensate: bool, reference: Sampled) -> None:
+        self.law, self.drive = law, EndPointDrive(law, reference, model)
+        self.command = limited(self.drive, support=model if compensate else None)
 
-    def __call__(self, sense: Sense) -> tuple[Array, Array]:
-        k, reference = self._period, self.reference
-        self._period += 1
-        self.tip.tip = sense.tip
-        torque, damping = self.law(
-            sense.position, sense.velocity, reference.position[k], reference.velocity[k], reference.acceleration[k]
-        )
-        return (torque if self.model is None else torque + self.model.gravity(sense.position)), damping
+    def __call__(self, sense: Sense) -> Command:
+        return self.command(sense)
 
     def state(self) -> list[float]:
-        """Error (3), usage (3), E, nodes, largest Gaussian of a lattice, for the columns of ``STATE``."""
-        nodes, peak = 0, 0.0
-        if self.network is not None:
-            basis = self.network.basis
-            nodes = basis.nodes if isinstance(basis, GrowingGaussians) else basis.capacity
-            peak = float(self.network.features.max()) if isinstance(basis, Lattice) else 0.0
-        return [*self.law.error, *self.law.usage, self.law.share, nodes, peak]
+        """Error (3), usage (3), E, nodes, largest feature, for the columns of ``STATE``."""
+        told = {**UNTOLD, **report(self.law)}
+        return [*self.drive.error, *told["usage"], told["share"], told["nodes"], told["activation"]]
 
 
+#: What a law is taken to report where it reports nothing.
+UNTOLD: dict[str, Any] = {"usage": (math.nan,) * 3, "share": 1.0, "nodes": 0, "activation": 0.0}
 STATE: dict[str, Any] = {"error": slice(0, 3), "usage": slice(3, 6), "share": 6, "nodes": 7, "activation": 8}
 
 
@@ -125,21 +88,23 @@ def simulate(config: Config) -> Recording:
     network: AdaptiveNetwork | None = None
     if config.network is not None:
         network = config.network(gain=np.array(config.effective_gain) / config.feature_energy)
-    tip = TipKinematics(model)
-    law: GlobalAdaptiveControl = config.law(tip, network)
-    nominal = model if config.gravity_compensation else None
+    law = build(config.law, model=model, network=network)
     parts, images, status, knowledge = [], {}, "finished", None
     for number, reference in motions(config):
         if network is not None and number not in TRAINING:
             if knowledge is None:
-                knowledge = network.weights.copy(), getattr(network.basis, "centres", None)
-            _restore(network, *knowledge)
+                knowledge = network.weights.copy(), network.basis.centres.copy()
+            network.reset(knowledge[0])
+            network.basis.reset(knowledge[1])
             law.learning = config.mode != "frozen"
-        pilot = Pilot(law, tip, nominal, reference)
+        pilot = Pilot(law, model, config.gravity_compensation, reference)
         with scene(config) as world:
-            duration = len(reference.position) * config.step
             part = world.run(
-                duration, {"arm": pilot}, probes={"state": pilot.state}, record_every=EVERY, on_divergence="stop"
+                reference.duration,
+                {"arm": pilot},
+                probes={"state": pilot.state},
+                record_every=EVERY,
+                on_divergence="stop",
             )
             if config.picture and number < 3:
                 images[f"phase{number + 1}"] = photograph(world, part, config.task.pictured[number])
@@ -152,12 +117,6 @@ def simulate(config: Config) -> Recording:
     recording = joined(parts, config.step * EVERY)
     recording.images, recording.status = images, status
     return recording
-
-
-def _restore(network: AdaptiveNetwork, weights: Array, centres: Array | None) -> None:
-    if isinstance(network.basis, GrowingGaussians):
-        network.basis.reset(centres)
-    network.reset(weights)
 
 
 def joined(parts: list[tuple[int, Recording]], step: float) -> Recording:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from dexrepro.control.global_adaptive import GlobalAdaptiveControl
+from dexrepro.control.contract import Law, build, memory, report
+from dexrepro.control.motion import Sampled
 from dexrepro.experiment import Config, Recording
-from dexrepro.networks import GrowingGaussians
+from dexrepro.physics.drive import EndPointDrive, Kinematics
 from dexrepro.physics.elements import Push
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.world import World
@@ -25,32 +25,25 @@ SNAPSHOT = 50  # control periods between two records of the weights
 ELLIPSE, FROZEN = 4, 5  # segment numbers after the strokes 0 to 3
 
 
-@dataclass(frozen=True)
-class Reference:
-    """A motion sampled at the control instants: position [m], velocity [m/s], acceleration [m/s^2], each (n, 2)."""
-
-    position: Array
-    velocity: Array
-    acceleration: Array
-
-
-def stroke(config: Config, angle: float, duration: float) -> Reference:
+def stroke(config: Config, angle: float, duration: float) -> Sampled:
     """A diameter of the ellipse, travelled to and fro; ``angle`` [deg] is the parameter of its end on the ellipse."""
     rate, direction = 2 * math.pi / config.task.period, math.radians(angle)
     phase = rate * np.arange(round(duration / config.step))[:, None] * config.step
     end = np.array(config.task.semi_axes) * (math.cos(direction), math.sin(direction))
     sine, cosine = np.sin(phase), np.cos(phase)
-    return Reference(np.array(config.task.centre) + sine * end, rate * cosine * end, -(rate**2) * sine * end)
+    return Sampled(config.step, np.array(config.task.centre) + sine * end, rate * cosine * end, -(rate**2) * sine * end)
 
 
-def ellipse(config: Config, duration: float) -> Reference:
+def ellipse(config: Config, duration: float) -> Sampled:
     """The ellipse around the centre, counterclockwise from the parameter ``task.phase``."""
     rate = 2 * math.pi / config.task.period
     phase = rate * np.arange(round(duration / config.step)) * config.step + config.task.phase
     axes = np.array(config.task.semi_axes)
     circle = np.stack([np.cos(phase), np.sin(phase)], axis=1)
     turned = np.stack([-np.sin(phase), np.cos(phase)], axis=1)
-    return Reference(np.array(config.task.centre) + axes * circle, rate * axes * turned, -(rate**2) * axes * circle)
+    return Sampled(
+        config.step, np.array(config.task.centre) + axes * circle, rate * axes * turned, -(rate**2) * axes * circle
+    )
 
 
 def scene(config: Config) -> World:
@@ -69,27 +62,22 @@ class Pilot:
     The torque's damping term is taken at the present velocity: it is light for these links (K_2 step / M = 0.01).
     """
 
-    def __init__(self, law: GlobalAdaptiveControl, reference: Reference, averaged: int) -> None:
-        self.law, self.reference = law, reference
-        self.network: Any = law.network
-        self._from = len(reference.position) - averaged
-        self._period = 0
+    def __init__(self, law: Law, kinematics: Kinematics, reference: Sampled, averaged: int) -> None:
+        self.drive = EndPointDrive(law, reference, None, kinematics=kinematics)
+        self.law, self.reference, self.network = law, reference, memory(law)
+        self._from = len(reference) - averaged
         self._sum, self._samples = np.empty((0, 0)), 0
         self.snapshots: list[Array] = []
-        law.reset()
 
     def __call__(self, sense: Sense) -> Array:
-        k, reference = self._period, self.reference
-        self._period += 1
-        torque, damping = self.law(
-            sense.position, sense.velocity, reference.position[k], reference.velocity[k], reference.acceleration[k]
-        )
+        k = self.reference.index(sense.time)
+        torque, damping, _ = self.drive(sense)
         if self.network is not None:
             if k % SNAPSHOT == 0:
                 self.snapshots.append(self.network.weights.copy())
             if k >= self._from:
                 self._average(self.network.weights)
-        return torque - damping * sense.velocity
+        return torque if damping is None else torque - damping * sense.velocity
 
     def _average(self, weights: Array) -> None:
         if self._sum.shape != weights.shape:  # the node set grew inside the window: begin anew
@@ -104,30 +92,31 @@ class Pilot:
 
     def state(self) -> list[float]:
         """Error (2), usage (2), E, nodes, |G|^2, |Xi|, largest |Xi_k|, alpha' (2): the columns of ``STATE``."""
-        law, nodes, energy = self.law, 0, 0.0
-        if self.network is not None:
-            basis, features = self.network.basis, self.network.features
-            nodes = basis.nodes if isinstance(basis, GrowingGaussians) else basis.capacity
-            energy = features @ features
-        z = law.input.tolist()
+        told = {**UNTOLD, **report(self.law)}
+        z = told["input"].tolist()
         norm, peak = math.hypot(*z), max(map(abs, z))
-        return [*law.error, *law.usage, law.share, nodes, energy, norm, peak, *z[6:]]
+        return [*self.drive.error, *told["usage"], told["share"], told["nodes"], told["feature_energy"], norm, peak,
+                *z[6:]]  # fmt: skip
 
 
+#: What a law is taken to report where it reports nothing.
+UNTOLD: dict[str, Any] = {"usage": (math.nan,) * 2, "share": 1.0, "nodes": 0, "feature_energy": 0.0,
+                          "input": np.full(8, math.nan)}  # fmt: skip
 STATE: dict[str, Any] = {"error": slice(0, 2), "usage": slice(2, 4), "share": 4, "nodes": 5, "feature_energy": 6}
 STATE |= {"input_norm": 7, "input_peak": 8, "virtual_acceleration": slice(9, 11)}
 
 
 def simulate(config: Config) -> Recording:
     """Train on the strokes (if the case trains), then draw the ellipse; segments follow each other in ``time``."""
-    law = config.law(TwoLink(config.arm.lengths))
-    parts, weights, centres = [], [], []
+    arm = TwoLink(config.arm.lengths)
+    law = build(config.law, model=arm, network=None)
+    parts, weights = [], []
     status = "finished"
     for number, reference in _segments(config, law):
-        pilot = Pilot(law, reference, round(config.task.period / config.step))
+        pilot = Pilot(law, arm, reference, round(config.task.period / config.step))
         with scene(config) as world:
             part = world.run(
-                len(reference.position) * config.step,
+                reference.duration,
                 {"arm": pilot},
                 probes={"state": pilot.state},
                 on_divergence="stop",
@@ -139,17 +128,15 @@ def simulate(config: Config) -> Recording:
         if part.status != "finished":
             status = part.status
             break
-        if pilot.network is not None:
-            centres.append(getattr(pilot.network.basis, "nodes", 0))
-            if law.learning and number < ELLIPSE:
-                pilot.network.reset(pilot.mean_weights)
+        if pilot.network is not None and law.learning and number < ELLIPSE:
+            pilot.network.reset(pilot.mean_weights)
     recording = _joined(parts, config)
     recording.status = status
     _add_weights(recording, parts, weights, law, config)
     return recording
 
 
-def _segments(config: Config, law: GlobalAdaptiveControl) -> Iterator[tuple[int, Reference]]:
+def _segments(config: Config, law: Any) -> Iterator[tuple[int, Sampled]]:
     if config.training:
         for number, angle in enumerate(config.task.stroke_angles):
             yield number, stroke(config, angle, config.task.stroke_duration)
@@ -181,17 +168,18 @@ def _add_weights(
     recording: Recording, parts: list[tuple[int, Recording]], weights: list[list[Array]], law: Any, config: Config
 ) -> None:
     """Frames ``settled`` and, of growing networks, ``weights`` (those of the Gaussians, over time) and ``centres``."""
-    if law.network is None:
+    network = memory(law)
+    if network is None:
         return
     histories = sorted(zip([number for number, _ in parts], weights), key=lambda item: item[0])
-    per_node = getattr(law.network.basis, "features_per_node", 1)
+    per_node = network.basis.features_per_node
     last = round(10.0 / (SNAPSHOT * config.step))
     recording.frames["settled"] = pd.DataFrame(
         [settled(history[-last:], per_node) for number, history in histories if number == ELLIPSE]
     )
-    if not isinstance(law.network.basis, GrowingGaussians):
+    if not network.basis.grows:
         return
-    basis, rows = law.network.basis, []
+    basis, rows = network.basis, []
     for number, history in histories:
         for k, snapshot in enumerate(history):
             gaussians = np.full((basis.nodes, 2), np.nan)

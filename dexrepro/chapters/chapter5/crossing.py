@@ -24,7 +24,7 @@ def repetitions(blocks: int, config: Config, rng: np.random.Generator) -> list[A
     time = np.linspace(0.0, config.dmp.duration, config.dmp.samples)
     own = {int(number): files for number, files in (config.get("demonstrations") or {}).items()}
     if blocks in own:
-        paths = recorded(own[blocks], shape.count, len(time), config.unit, axes=3)
+        paths = recorded(own[blocks], shape.count, len(time), config, axes=3)
         return [(1 + config.perturbation) * smoothed(time, path, hand.cutoff) for path in paths]
     points = via_points(blocks, shape.clearance, shape.plateau) * (1 + config.perturbation)
     points[-1, 1:] += shape.end_offset

@@ -14,7 +14,7 @@ ERRATA = (
         "error",
         "The target forcing has - D v; solving (5.1) for f gives + D v (chapter 6 prints it so).",
         "+ D v",
-        switch="letter_accuracy.training.damping_sign=-1",
+        switch="letter_accuracy.training.printed=true",
         evidence=(
             *(f"{ACCURACY}.{case}.n20.dmp.mse" for case in ("default", "printed_damping")),
             *(f"{STYLES}.{case}.z.final" for case in ("default", "printed_damping")),
@@ -148,7 +148,7 @@ ERRATA = (
         "The network enters with the wrong sign for the weight law (5.44); it changes between (5.33) and (5.34). The "
         "printed sign makes learning a positive feedback.",
         "+ g(S), or the first sign of (5.44) turned.",
-        switch="bounded_tracking.law.network_sign=-1",
+        switch="bounded_tracking.law.printed=[network]",
         evidence=tuple(
             f"{TRACKING}.{c}.{m}"
             for c in ("letter_w", "printed_sign", "sign_only", "printed_no_robust")
@@ -200,7 +200,7 @@ ERRATA = (
         "unit is not that of a rate: enough where |v'/v| is above about 1/s, too little below, and nothing once v has "
         "reached a floor. A radical over the first two terms may have been meant.",
         "L = -(k_c + |v'/v|), so that L - v'/v <= -k_c.",
-        switch="bounded_tracking.law.virtual_gain=printed",
+        switch="bounded_tracking.law.printed=[virtual_gain]",
         evidence=tuple(
             f"{TRACKING}.{c}.{m}"
             for c in ("printed_gain", "printed_gain_no_network")
@@ -235,6 +235,16 @@ ERRATA = (
         "error",
         "V_m and the V_2 of V lack the factor 1/2, and (5.49) has = for <=; the third entry of eta is twice too large.",
         "1/2 W~^T Gamma_s^-1 W~; <=.",
+    ),
+    Erratum(
+        "E5.32",
+        "(5.46)-(5.48)",
+        "error",
+        "The step to (5.48) bounds epsilon delta by delta^2 / 2 + epsilon^2 / 2, writes the second term and drops the "
+        "first; with it the decay is by K_tau - 1/2, so that K_tau > 1/2 is needed.",
+        "epsilon delta <= a delta^2 + epsilon^2 / (4 a) with a < K_tau: decay by K_tau - a for any K_tau, and a larger "
+        "sigma. Here K_tau is below 1/2.",
+        evidence=(f"{TRACKING}.letter_w.lyapunov_late",),
     ),
     Erratum(
         "E5.27",

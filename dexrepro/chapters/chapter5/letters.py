@@ -29,13 +29,13 @@ def demonstrations(
     if not files:
         return [demonstration(letter, config, rng) for _ in range(count)]
     time = np.linspace(0.0, config.dmp.duration, config.dmp.samples)
-    paths = recorded(files, count, config.dmp.samples, config.unit, axes=2)
+    paths = recorded(files, count, config.dmp.samples, config, axes=2)
     return [Demonstration.of(time, (1 + config.perturbation) * smoothed(time, p, config.hand.cutoff)) for p in paths]
 
 
 def taught(demonstration: Demonstration, config: Config) -> Demonstration:
     """What a primitive learns from: with the printed sign of D v, Eq. (5.5), the same path at negated velocity."""
-    return replace(demonstration, velocity=config.training.damping_sign * demonstration.velocity)
+    return replace(demonstration, velocity=(-1 if config.training.printed else 1) * demonstration.velocity)
 
 
 def letter_scaling(config: Config) -> Scaling:

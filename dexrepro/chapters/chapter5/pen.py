@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from dexrepro.control.bounded_neural import barrier
-from dexrepro.control.gravity_pd import GravityPD
+from dexrepro.control.contract import Law, channels
+from dexrepro.control.motion import Sampled
 from dexrepro.control.prescribed_performance import PerformanceBound
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms
 from dexrepro.networks import AdaptiveNetwork, Gaussians
+from dexrepro.physics.drive import JointDrive
 from dexrepro.physics.elements import JointLoad, TipForce, joint_friction
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
@@ -23,7 +25,6 @@ from dexrepro.primitives import Demonstration
 from dexrepro.robots.arm import Shape, Tool
 from dexrepro.robots.pen_arm import DARK, LENGTH, WHITE, pen, pen_arm, pen_arm_angles, pen_arm_tip
 
-Reference = tuple[Any, Any, Any]
 SETTLED = 1.0  # s, from here on errors count as settled
 HEIGHT = -0.10  # m, of paper and table below the arm's shoulder
 
@@ -49,10 +50,10 @@ def from_table(tip: Any) -> Any:
     return 100 * np.stack([-tip[..., 1], tip[..., 0] - 0.17, tip[..., 2] - HEIGHT], axis=-1)
 
 
-def reference(tip: Any, step: float) -> Reference:
-    """Joint angles, rates and accelerations (N, 3) each for a tip path (N, 3) [m] sampled every ``step`` [s]."""
+def reference(tip: Any, step: float) -> Sampled:
+    """The joints' motion for a tip path (N, 3) [m] sampled every ``step`` [s]."""
     angles = Demonstration.of(step * np.arange(len(tip)), pen_arm_angles(tip), at_rest=False)
-    return angles.position, angles.velocity, angles.acceleration
+    return Sampled(step, angles.position, angles.velocity, angles.acceleration)
 
 
 def world(config: Config, start: Any) -> World:
@@ -92,10 +93,10 @@ def model(config: Config) -> RigidBodyModel:
     return RigidBodyModel(pen_arm(tool=pen(config.arm.pen_mass)), mass_error=config.arm.model_mass - 1.0)
 
 
-def node_centres(config: Config, target: Reference, nodes: int, rng: np.random.Generator) -> Any:
+def node_centres(config: Config, target: Sampled, nodes: int, rng: np.random.Generator) -> Any:
     """Centres (nodes, 6) scattered along a reference, in the scaled input [q / 0.35, q' / 1.2] of the law."""
-    samples = np.linspace(0, len(target[0]) - 1, nodes).round().astype(int)
-    scaled = np.concatenate([target[0] / 0.35, target[1] / 1.2], axis=1)
+    samples = np.linspace(0, len(target) - 1, nodes).round().astype(int)
+    scaled = np.concatenate([target.position / 0.35, target.velocity / 1.2], axis=1)
     return scaled[samples] + config.network.scatter * rng.standard_normal((nodes, 6))
 
 
@@ -114,27 +115,20 @@ def network(config: Config, centres: Any, target: Reference) -> AdaptiveNetwork:
     return AdaptiveNetwork(nodes, 3, gain=gain, leakage=forgetting, step=config.arm.step)
 
 
-def law(config: Config, nominal: RigidBodyModel, learner: AdaptiveNetwork | None) -> Any:
-    """The configured law on a nominal model."""
-    return config.law(nominal) if config.law.func is GravityPD else config.law(nominal, learner)
-
-
-def track(config: Config, target: Reference, tracking: Any, nominal: RigidBodyModel) -> Recording:
+def track(config: Config, target: Sampled, law: Law, nominal: RigidBodyModel) -> Recording:
     """Run the arm along a reference from the configured initial joint error.
 
-    Records ``desired`` joint angles, ``error`` e = q_d - q [rad] and ``velocity_error`` delta beside the World's
-    channels.
+    Records ``desired`` joint angles, ``error`` e = q_d - q [rad] and, if the law reports it, ``velocity_error`` delta
+    beside the World's channels.
     """
-    position, velocity, acceleration = target
-    step, share = config.arm.step, config.arm.contact_estimate if config.arm.drag else 0.0
+    position, share = target.position, config.arm.contact_estimate if config.arm.drag else 0.0
 
-    def controller(sense: Sense) -> Any:
-        k = round(sense.time / step)
-        contact = share * (sense.force @ nominal.jacobian(sense.position)[:3]) if share else 0.0
-        return tracking(sense.position, sense.velocity, (position[k], velocity[k], acceleration[k]), contact)
+    def contact(sense: Sense) -> Any:
+        return share * (sense.force @ nominal.jacobian(sense.position)[:3])
 
-    probes = {"velocity_error": lambda: tracking.velocity_error}
-    duration = (len(position) - 1) * step
+    controller = JointDrive(law, target, contact if share else None)
+    probes = channels(law, "velocity_error")
+    duration = (len(position) - 1) * config.arm.step
     with world(config, position[0] - np.array(config.arm.initial_error)) as scene:
         recording = scene.run(duration, {"arm": controller}, probes=probes, on_divergence="stop")
     recording.series["desired"] = position[: len(recording.time)]
@@ -169,6 +163,8 @@ def quality(recording: Recording, config: Config) -> Metrics:
 
 def _lyapunov(recording: Recording, config: Config) -> Metrics:
     """rho V_1 + V_2 with the plant's own mass matrix (a measurement, no law sees it), relative to its start."""
+    if "velocity_error" not in recording:
+        return {"lyapunov_peak": None, "lyapunov_late": None}
     every = slice(None, None, 20)
     time, delta = recording.time[every], recording["velocity_error"][every]
     plant = RigidBodyModel(pen_arm(tool=pen(config.arm.pen_mass)))

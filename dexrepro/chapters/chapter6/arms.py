@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from copy import deepcopy
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
-from dexrepro.control.computed_torque import ComputedTorque
+from dexrepro.control.contract import build
+from dexrepro.control.motion import Sampled
+from dexrepro.physics.drive import JointDrive
 from dexrepro.physics.model import RigidBodyModel
-from dexrepro.physics.plant import Sense
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.inverse_kinematics import InverseKinematics
 
@@ -42,16 +43,8 @@ def joint_path(
     return CubicSpline(time, angles), worst
 
 
-def follow(
-    model: RigidBodyModel, path: CubicSpline, frequency: float, step: float, duration: float
-) -> Callable[..., Any]:
-    """Controller that follows a joint path by computed torque of a critically damped frequency [rad/s]."""
-    law = ComputedTorque(model=model, frequency=frequency)
+def follow(model: RigidBodyModel, path: CubicSpline, law: Any, step: float, duration: float) -> JointDrive:
+    """Drives an arm along a joint path with a law of its own like the one given."""
     time = step * np.arange(round(duration / step) + 1)
-    angles, rates = path(time), path(time, 1)
-
-    def controller(sense: Sense) -> Array:
-        k = min(round(sense.time / step), len(time) - 1)
-        return law(angles[k], sense.position, sense.velocity, rates[k])
-
-    return controller
+    wanted = Sampled(step, *(path(time, derivative) for derivative in range(3)))
+    return JointDrive(build(deepcopy(law), model=model), wanted)

@@ -5,7 +5,7 @@ Board coordinates are in cm, the robot's in m.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,12 +14,14 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
 from dexrepro.chapters.chapter7 import skills
+from dexrepro.control import contract
+from dexrepro.control.motion import Sampled
 from dexrepro.experiment import Config, Recording
 from dexrepro.humans.reaching import Obstacle
 from dexrepro.measures import rms
+from dexrepro.physics.drive import JointDrive
 from dexrepro.physics.elements import JointLoad, joint_friction
 from dexrepro.physics.model import RigidBodyModel
-from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
@@ -50,20 +52,13 @@ def to_board(points: Array) -> Array:
     )
 
 
-@dataclass(frozen=True)
-class Reference:
-    """What the arm is to do, every control period: time [s], joint angles and derivatives, tip [m], stiffness [-]."""
+class Reference(Sampled):
+    """What the joints are to do every control period, with the ``tip`` (N, 3) [m] and the ``stiffness`` (N,) [-].
 
-    time: Array
-    position: Array
-    velocity: Array
-    acceleration: Array
-    tip: Array
-    stiffness: Array
+    Follows a path (M, 3) [cm] of the movement primitive with the muscle's stiffness (M,); still before and after it.
+    """
 
-    @classmethod
-    def of(cls, path: Array, stiffness: Array, config: Config) -> Reference:
-        """Follow a path (N, 3) [cm] of the movement primitive; hold still before and after it."""
+    def __init__(self, path: Array, stiffness: Array, config: Config) -> None:
         period, hold, duration = config.control_period, config.hold, config.demonstration.duration
         time = np.arange(round((duration + 2 * hold) / period) + 1) * period
         phase = np.clip(time - hold, 0.0, duration)
@@ -71,8 +66,8 @@ class Reference:
         tip = CubicSpline(samples, to_robot(path))(phase)
         position = gaussian_filter1d(pen_arm_angles(tip), config.reference_smoothing / period, axis=0, mode="nearest")
         velocity = np.gradient(position, period, axis=0)
-        acceleration = np.gradient(velocity, period, axis=0)
-        return cls(time, position, velocity, acceleration, pen_arm_tip(position), np.interp(phase, samples, stiffness))
+        super().__init__(period, position, velocity, np.gradient(velocity, period, axis=0))
+        self.tip, self.stiffness = pen_arm_tip(position), np.interp(phase, samples, stiffness)
 
 
 def planned(config: Config) -> tuple[skills.NewTask, Reference]:
@@ -82,7 +77,7 @@ def planned(config: Config) -> tuple[skills.NewTask, Reference]:
     _, traces = skills.measure_stiffness(config)
     stiffness = skills.generalised_stiffness(config, task, traces, "average")
     path = task.perform(task.reaction(config.task.direction))
-    return task, Reference.of(path, stiffness, config)
+    return task, Reference(path, stiffness, config)
 
 
 def scene(config: Config) -> World:
@@ -141,34 +136,25 @@ def photographs(
 
 
 def run(config: Config, reference: Reference, world: World, **options: Any) -> Recording:
-    """Follow a reference; channels ``planned`` (tip, m), ``reference`` (angles), ``filtered_error`` r, ``impedance``.
+    """Follow a reference; channels ``planned`` (tip, m), ``reference`` (angles), ``filtered_error`` r if reported.
 
     The run ends with a status when a joint turns faster than 200 rad/s.
     """
     model = RigidBodyModel(pen_arm(gripper(config.arm.model_gripper_mass) if config.arm.model_gripper_mass else None))
-    law = config.law(model)
-    law.reset()
-    rows = list(zip(reference.position, reference.velocity, reference.acceleration))
     stiffness = reference.stiffness.tolist()
-    state = {"index": 0}
-
-    def controller(sense: Sense) -> Array:
-        state["index"] = index = min(round(sense.time / config.control_period), len(rows) - 1)
-        return law(sense.position, sense.velocity, rows[index], stiffness[index])
-
+    law = contract.build(config.law, model=model, stiffness=lambda time: stiffness[reference.index(time)])
     arm = world.arm("arm")
 
     def stop(time: float) -> str | None:
         return f"diverged at {time:.3f} s" if max(map(abs, arm.dq)) > 200 else None
 
     probes = {
-        "reference": lambda: rows[state["index"]][0],
-        "planned": lambda: reference.tip[state["index"]],
-        "filtered_error": lambda: law.error,
-    }
+        "reference": lambda: reference(world.time).position,
+        "planned": lambda: reference.tip[reference.index(world.time)],
+    } | contract.channels(law, "filtered_error")
     recording = world.run(
-        reference.time[-1],
-        {"arm": controller},
+        (len(reference) - 1) * reference.dt,
+        {"arm": JointDrive(law, reference)},
         control_period=config.control_period,
         probes=probes | options.pop("probes", {}),
         stop=stop,
@@ -176,7 +162,7 @@ def run(config: Config, reference: Reference, world: World, **options: Any) -> R
         on_divergence="stop",
         **options,
     )
-    index = np.minimum(np.round(recording.time / config.control_period).astype(int), len(rows) - 1)
+    index = np.minimum(np.round(recording.time / config.control_period).astype(int), len(reference) - 1)
     recording.series["stiffness"] = reference.stiffness[index]
     return recording
 

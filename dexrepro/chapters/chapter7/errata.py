@@ -51,7 +51,7 @@ ERRATA = (
         "E7.09", "(7.21)-(7.23)", "error",
         "- D v: solving (7.3) for f gives + D v. Printed three times. In (7.23) alone the learned reaction is worse "
         "than none.",
-        "+ D v.", switch="shared.target_sign=printed",
+        "+ D v.", switch="shared.printed_target=true",
         evidence=(f"{DEMONSTRATIONS}.corrected.ordinary_rmse", f"{DEMONSTRATIONS}.printed_sign.ordinary_rmse",
                   f"{LEARNING}.frozen.no_reaction", f"{LEARNING}.frozen.printed_difference"),
     ),
@@ -102,7 +102,7 @@ ERRATA = (
         "tau_hat is subtracted, and its second line is minus what acted plus K_imp r: what acted comes out right, "
         "K_imp r with the wrong sign. The closed loop M r' + (C - K) r diverges.",
         "tau = ... + tau_hat with tau_hat = (tau - M q'' - C q' - G)(t - L) + K_imp r.",
-        switch=f"{TRACKING}.law.sign=printed",
+        switch=f"{TRACKING}.law.printed=[second_line]",
         evidence=(f"{TRACKING}.muscle.rms_error", f"{TRACKING}.printed.diverged_at",
                   f"{TRACKING}.printed_unlimited.diverged_at"),
     ),
@@ -110,7 +110,7 @@ ERRATA = (
         "E7.19", "(7.39)", "error",
         "Its two lines differ in sign: with tau_e = f - J^T F_e, tau_e = tau - M q'' - C q' - G. The first line, "
         "subtracted as in (7.38), diverges as well.",
-        "As E7.18, or define tau_e = J^T F_e - f.", switch=f"{TRACKING}.law.sign=printed_first_line",
+        "As E7.18, or define tau_e = J^T F_e - f.", switch=f"{TRACKING}.law.printed=[first_line]",
         evidence=(f"{TRACKING}.printed_first_line.diverged_at",),
     ),
     Erratum(

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dexrepro.chapters.demonstrations import recorded
-from dexrepro.config import InputError
+from dexrepro.config import InputError, compose_chapter
 from dexrepro.experiment import Config
 from dexrepro.humans.muscle import Muscle, low_pass
 from dexrepro.humans.reaching import Obstacle, Reach, Reacher
@@ -57,6 +57,12 @@ def reach(config: Config) -> Reach:
 def conditions(config: Config) -> list[Condition]:
     """Conditions of Table 7.1 in the order of the rules."""
     scene, result = config.scene, []
+    for name in ("far", "close"):
+        if not 0.02 < reach(config).locate(scene[name])[0] < 0.98:
+            raise InputError(
+                f"scene.{name} = {_point(scene[name])} is not allowed: the reach from {_point(scene.start)} to "
+                f"{_point(scene.goal)} cm must pass it; set {moved_scene(scene.start, scene.goal)}"
+            )
     for labels in config.fuzzy.rules:
         distance, height, direction = labels
         obstacle = Obstacle(scene[distance], scene[height], scene.cube)
@@ -83,25 +89,52 @@ def demonstrate(config: Config) -> tuple[Array, Array]:
     ordinary = someone.demonstrate_ordinary(task, count, rng)
     if config.get("demonstrations"):
         ordinary = recorded_reaches(config, ordinary.shape)
-    reactions = [someone.demonstrate(task, c.obstacle, c.direction, count, rng) for c in conditions(config)]
+    try:
+        reactions = [someone.demonstrate(task, c.obstacle, c.direction, count, rng) for c in conditions(config)]
+    except RuntimeError as error:
+        raise InputError(f"scene: {error}; set {moved_scene(config.scene.start, config.scene.goal)}") from error
     return moved(config, ordinary), moved(config, np.array(reactions))
 
 
 def recorded_reaches(config: Config, shape: tuple[int, ...]) -> Array:
-    """The user's ordinary reaches, (repetitions, N, 3) [cm].
+    """The user's ordinary reaches, (repetitions, N, 3) [cm], heights counted from where each begins.
 
     Raises InputError where one does not join the ends of the task, to within 1 cm.
     """
     count, samples, axes = shape
-    paths = np.array(recorded(config.demonstrations, count, samples, config.unit, axes))
-    for name, end, point in zip(("start", "goal"), reach(config).ends, (paths[:, 0], paths[:, -1])):
-        far = point[np.linalg.norm(point - end, axis=1).argmax()]
-        if np.linalg.norm(far - end) > 1.0:
-            raise InputError(
-                f"demonstrations: {name} at ({', '.join(f'{value:.3g}' for value in far)}) cm instead of "
-                f"({', '.join(f'{value:.3g}' for value in end)}) cm; set shared.scene.{name} to (x, y) of yours"
-            )
+    paths = np.array(recorded(config.demonstrations, count, samples, config, axes))
+    paths[..., 2] -= paths[:, :1, 2]
+    ends, wanted = paths[:, [0, -1]], np.array(reach(config).ends)
+    if np.abs(ends[..., 2]).max() > 1.0:
+        raise InputError(f"demonstrations: they end {ends[:, 1, 2].max():.3g} cm above their start; it must be as high")
+    if np.linalg.norm(ends - ends.mean(axis=0), axis=-1).max() > 1.0:
+        raise InputError("demonstrations: their starts, or their goals, lie more than 1 cm from their mean")
+    if np.linalg.norm(ends - wanted, axis=-1).max() > 1.0:
+        start, goal = ends.mean(axis=0)[:, :2]
+        raise InputError(
+            f"demonstrations: they go from {_point(start)} to {_point(goal)} cm instead of from {_point(wanted[0])} to "
+            f"{_point(wanted[1])} cm; set {moved_scene(start, goal)}"
+        )
     return paths
+
+
+def moved_scene(start: ArrayLike, goal: ArrayLike) -> str:
+    """Overrides that take the book's scene to another way (2,), (2,) [cm]: the obstacles stand at the same share of
+    it, and are smaller where it is short."""
+    scene = Config.of(compose_chapter("7")["shared"]["scene"])
+    old, new = (np.array(ends, dtype=float) @ (1, 1j) for ends in ((scene.start, scene.goal), (start, goal)))
+    turn = (new[1] - new[0]) / (old[1] - old[0])
+    places = {
+        name: new[0] + turn * (np.dot(scene[name], (1, 1j)) - old[0]) for name in ("start", "goal", "far", "close")
+    }
+    words = [f"shared.scene.{name}=[{z.real + 0:.3g},{z.imag + 0:.3g}]" for name, z in places.items()]
+    if abs(turn) < 0.8:
+        words += [f"shared.scene.{name}={abs(turn) * scene[name]:.2g}" for name in ("cube", "tool_radius")]
+    return " ".join(words)
+
+
+def _point(place: ArrayLike) -> str:
+    return f"({', '.join(f'{value:.3g}' for value in np.asarray(place)[:2])})"
 
 
 def measure_stiffness(config: Config) -> tuple[Array, Array]:
@@ -136,7 +169,7 @@ class Primitive:
         self.phases = phase(self.time, self.duration, config.dmp.phase_decay)
         self.kernels = GaussianKernels.spaced(kernels, config.dmp.phase_decay, config.dmp.overlap)
         self.system = SpringDamper(config.dmp.stiffness, config.dmp.damping)
-        self.printed_sign = {"corrected": False, "printed": True}[config.target_sign]
+        self.printed_target = config.printed_target
         self.ridge = config.dmp.ridge
 
     def target(self, paths: Array, goal: ArrayLike, cutoff: float, padding: str = "odd") -> Array:
@@ -144,7 +177,7 @@ class Primitive:
         smooth = low_pass(paths, cutoff, self.rate, padding, axis=-2)  # type: ignore[arg-type]
         velocity = self.duration * np.gradient(smooth, 1 / self.rate, axis=-2, edge_order=2)
         acceleration = self.duration * np.gradient(velocity, 1 / self.rate, axis=-2, edge_order=2)
-        return self.system.forcing(smooth, velocity, acceleration, goal, self.printed_sign)
+        return self.system.forcing(smooth, velocity, acceleration, goal, self.printed_target)
 
     def fit(self, target: Array) -> Array:
         """Weights (n, d) of the kernels for a forcing term (N, d), Eq. (7.20)."""

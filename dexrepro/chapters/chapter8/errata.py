@@ -51,7 +51,7 @@ ERRATA = (
         "tau_e acts on the robot with a plus in (8.1), (8.6) and with a minus in (8.5), (8.27): the plus in (8.31) "
         "cancels it with (8.27) and doubles it with (8.1). The simulation cannot tell which (0.3 mm either way).",
         "-tau_e in (8.31) with (8.1) and (8.6).",
-        "unknown_object.law.force_sign=1",
+        "unknown_object.law.printed=true",
         (f"{OBJECT}.force_sign_printed.max_error_x", f"{OBJECT}.soft.max_error_x"),
     ),
     Erratum(
@@ -104,7 +104,7 @@ ERRATA = (
         "tau_e = K_0 zeta (three times) against tau_e = -K zeta above (8.9); K_0 stabilises only with the minus. With "
         "tau_e as the force on the environment the plus would be right: the clash of E8.05.",
         "Minus.",
-        "unknown_object.interaction.sign=-1",
+        "unknown_object.interaction.printed=true",
         (f"{OBJECT}.plus.violated_at",),
     ),
     Erratum(

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dexrepro.control.impedance_learning import InteractionLaw, Reference
-from dexrepro.control.task_space import ArmState, Motion, TrackingLaw
-from dexrepro.physics.model import RigidBodyModel
-from dexrepro.physics.plant import Sense
+from dexrepro.control.contract import Measured
+from dexrepro.control.impedance_learning import InteractionLaw
+from dexrepro.control.motion import Motion, Path
+from dexrepro.physics.drive import EndPointDrive
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.planar import planar
 
@@ -27,11 +27,11 @@ def two_link(arm: Any) -> Arm:
     return planar(arm.lengths, arm.masses, inertias, centres=arm.centres)
 
 
-def circle(settings: Any) -> Callable[[float], Motion]:
+def circle(settings: Any) -> Path:
     """The desired path of Eq. (8.46) as a function of time [s], from an angle ``phase`` [rad] on."""
     (cx, cy), radius, rate, phase = settings.centre, settings.radius, settings.rate, settings.phase
 
-    def motion(time: float) -> Motion:
+    def motion(time: float) -> Motion[Array]:
         angle = phase + rate * time
         c, s = radius * math.cos(angle), radius * math.sin(angle)
         return Motion(
@@ -41,62 +41,27 @@ def circle(settings: Any) -> Callable[[float], Motion]:
     return motion
 
 
-class TaskController:
-    """A tracking law on an arm: measures, lets the interaction law move one axis of the reference, returns torques.
+def displaced(interaction: InteractionLaw, axis: int) -> Callable[[Measured[Array], Motion[Array]], Motion[Array]]:
+    """Lets the interaction law move one axis of a path by what is measured along it."""
 
-    law: gives the force at the end point; desired: the motion of d axes over time [s]; model: the arm's kinematics.
-    interaction: acts on the axis ``axis``. Everything probes and stop conditions ask for is an attribute.
-    """
-
-    def __init__(
-        self,
-        law: TrackingLaw,
-        desired: Callable[[float], Motion],
-        model: RigidBodyModel,
-        interaction: InteractionLaw | None = None,
-        axis: int = 0,
-    ) -> None:
-        self.law, self.desired, self.model = law, desired, model
-        self.interaction, self.axis = interaction, axis
-        self.path = self.reference = desired(0.0)
-        self.axes = len(self.path.position)
-        self.error = np.zeros(self.axes)
-
-    def __call__(self, sense: Sense) -> Array:
-        """Joint torques [N m]."""
-        return self.jacobian(sense.position).T @ self.force(sense)
-
-    def jacobian(self, position: Array) -> Array:
-        """Rows of the task's axes, shape (d, n)."""
-        return self.model.jacobian(position)[: self.axes]
-
-    def force(self, sense: Sense) -> Array:
-        """Force at the end point [N], shape (d,)."""
-        axes = self.axes
-        arm = ArmState(sense.position, sense.velocity, sense.tip[:axes], sense.tip_velocity[:axes])
-        force = sense.force[:axes]
-        self.path = self.reference = self.desired(sense.time)
-        if self.interaction is not None:
-            self.reference = self._displaced(self.interaction, arm.position, force)
-        self.error = arm.position - self.reference.position
-        return self.law(arm, self.reference, force)
-
-    def _displaced(self, interaction: InteractionLaw, position: Array, force: Array) -> Motion:
-        axis = self.axis
-        desired = Reference(*(float(part[axis]) for part in self.path))
-        displaced = interaction(desired, float(position[axis]), float(force[axis]))
-        motion = Motion(*(part.copy() for part in self.path))
-        for part, value in zip(motion, displaced):
+    def moved(measured: Measured[Array], path: Motion[Array]) -> Motion[Array]:
+        position, velocity, force = (float(part[axis]) for part in measured[1:4])
+        told = Measured(measured.time, position, velocity, force)
+        virtual = interaction(told, Motion(*(float(part[axis]) for part in path)))
+        motion = Motion(*(part.copy() for part in path))
+        for part, value in zip(motion, virtual):
             part[axis] = value
         return motion
 
+    return moved
 
-def beyond(controller: TaskController, bound: Any) -> Callable[[float], str | None]:
+
+def beyond(drive: EndPointDrive, bound: Any) -> Callable[[float], str | None]:
     """Stop condition: the error has reached its bound [m] on some axis."""
     bounds = [float(value) for value in bound]
 
     def stop(time: float) -> str | None:
-        for axis, (error, limit) in enumerate(zip(controller.error.tolist(), bounds)):
+        for axis, (error, limit) in enumerate(zip(drive.error.tolist(), bounds)):
             if not abs(error) < limit:
                 return f"error bound of axis {'xyz'[axis]} violated at {time:.4g} s"
         return None

@@ -12,8 +12,10 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.followers import PlanarFollower
+from dexrepro.control.contract import channels
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import rms
+from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
@@ -48,8 +50,7 @@ def scene(config: Config) -> World:
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
-    dt, law = config.control_period, config.law
-    law.reset(0.0)
+    dt, law = config.control_period, HoldingDrive(config.law)
     with scene(config) as world:
         followers = {}
         for name, plant in world.arms.items():
@@ -69,11 +70,10 @@ def simulate(config: Config, rng: Rng) -> Recording:
         def follow(sense: Sense) -> Any:
             own = followers["follower"]
             position = own.chain.forward(sense.position.tolist())[0] - x1
-            return own(sense, x1 + float(law(position, float(sense.force[0]))), height)
+            return own(sense, x1 + float(law(sense.time, position, float(sense.force[0]))), height)
 
         probes = {"reference": lambda: followers["follower"].last[0] - x1}
-        if hasattr(law, "weights"):
-            probes |= {"weights": lambda: law.weights, "estimate": lambda: float(law.estimate)}
+        probes |= channels(config.law, "weights", "estimate")
         recording = world.run(
             config.duration,
             controllers={"leader": lead, "follower": follow},

@@ -95,7 +95,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
 def measure(recording: Recording, config: Config) -> Metrics:
     phase, time = recording["phase"], recording.time
     late = recording.between(config.duration - 2.0)
-    error = recording["force"][late] - config.law.desired_force
+    error = recording["force"][late] - config.desired_force
     return {
         "switches": int(np.sum(np.abs(np.diff(phase)))),
         "contact": float(time[np.argmax(phase > 0)]) if phase.any() else None,

@@ -29,7 +29,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
                              label="sensed")  # fmt: skip
         axes[0, column].plot(recording.time[part], recording["force"][part], color=style.LINES[role]["color"],
                              label="true")  # fmt: skip
-        axes[0, column].axhline(config.cases[case].law["desired_force"], **style.LINES["reference"])
+        axes[0, column].axhline(config.cases[case].desired_force, **style.LINES["reference"])
         axes[1, column].plot(recording.time[part], recording["phase"][part], color=style.LINES[role]["color"],
                              linewidth=0.7)  # fmt: skip
         axes[1, column].set(xlabel="Time [s]", yticks=(0, 1), yticklabels=("field", "force law"))

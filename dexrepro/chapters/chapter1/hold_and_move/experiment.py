@@ -21,6 +21,7 @@ from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.control.facing import facing
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import angle_between, last_outside, rms
+from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
@@ -74,7 +75,8 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
-    law, dt = config.law, config.control_period
+    dt = config.control_period
+    law = HoldingDrive(config.law, config.speed_limit * dt)
     images: dict[str, Any] = {}
     with scene(config, rng) as world:
         followers = {
@@ -91,8 +93,8 @@ def simulate(config: Config, rng: Rng) -> Recording:
         facings = rotation_from_quaternion(facing(quaternion_from_rotation(rotations)))
         contact = config.object.length
         _fill(world, config, rng)
-        law.reset(0.0)
-        last = {"reference": 0.0, "measured": 0.0}
+        law.reset(0.0, 0.0)
+        last = {"measured": 0.0}
 
         def lead(sense: Sense) -> Any:
             k = round(sense.time / dt)
@@ -103,18 +105,16 @@ def simulate(config: Config, rng: Rng) -> Recording:
             axis = path.axis[k]
             distance = float((sense.tip - path.position[k]) @ axis)
             force = max(0.0, float(sense.force @ axis))
-            wanted = float(law(distance - contact, force))
-            limit = config.speed_limit * dt
-            last["reference"] += min(limit, max(-limit, wanted - last["reference"]))
             last["measured"] = force
-            target = path.position[k] + axis * (contact + last["reference"])  # Eq. (1.33) from the first contact on
+            reference = float(law(sense.time, distance - contact, force))
+            target = path.position[k] + axis * (contact + reference)  # Eq. (1.33) from the first contact on
             return followers["follower"].go(sense, target, facings[k])
 
         recording = world.run(
             config.duration,
             controllers={"leader": lead, "follower": follow},
             control_period=dt,
-            probes={"reference": lambda: last["reference"], "measured": lambda: last["measured"]},
+            probes={"reference": lambda: law.reference, "measured": lambda: last["measured"]},
             stop=lambda _: "object dropped" if world.bodies["object"].z < middle(config)[2] - 0.3 else None,
             events=_photographs(world, path, images) if config.photograph else (),
             record_every=round(dt / config.step),

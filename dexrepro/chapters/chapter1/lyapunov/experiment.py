@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.arrays import Rng
-from dexrepro.chapters.chapter1.line import press
+from dexrepro.chapters.chapter1.line import at, press
 from dexrepro.control.holding import AutoregressiveHolding, Compliant
 from dexrepro.control.passive_impedance import PassiveImpedance
 from dexrepro.experiment import Config, Metrics, Recording
@@ -38,11 +38,11 @@ def _candidate(config: Config) -> Recording:
     time = dt * np.arange(n)
     partner = config.ramp_speed * time
     contact = partner - config.desired_force / k
-    law = inner = _law(config, dt, error=config.error)
+    law = inner = _law(config, dt, printed=config.printed)
     if config.compliant:
         damper = PassiveImpedance(dt=dt, mass=config.mass, damping=config.damping, desired_force=config.desired_force)
         law = Compliant(law=inner, impedance=damper)  # type: ignore[assignment]
-    law.reset(0.0)
+    law.reset(at(0.0, 0.0))
     x, rows = 0.0, np.empty((n, 3))
     best = np.zeros(config.lags + 1)
     best[0] = config.ramp_speed
@@ -52,7 +52,8 @@ def _candidate(config: Config) -> Recording:
         velocity = damper.velocity if config.compliant else 0.0
         rows[i, 0] = (rows[i, 0] + rows[i, 1]) / (2 * config.adaptation)
         rows[i, 0] += 0.5 * config.mass * velocity**2 + (force - config.desired_force) ** 2 / (2 * k)
-        x = float(law(x, force, contact[i]) if config.ideal else law(x, force))
+        known = (contact[i],) if config.ideal else ()
+        x = float(law(at(x, force), *known))
         if abs(x) > config.guard:
             rows = rows[: i + 1]
             break

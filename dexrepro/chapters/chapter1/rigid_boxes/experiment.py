@@ -170,7 +170,7 @@ def judge(recording: Recording, config: Config) -> dict[str, Any]:
     time, box = recording.time, recording["box"]
     held = recording.between(GRIPPED, min(RELEASED, time[-1]) - 0.1)
     relative = (box - recording["middle"])[held]
-    slip = float(np.linalg.norm(relative - relative[0], axis=1).max())
+    slip = float(np.linalg.norm(relative - relative[0], axis=1).max()) if len(relative) else np.nan
     force = recording["force"][recording.between(GRIPPED - 0.5, min(RELEASED, time[-1]) - 0.1)]
     touching = force > 0.0
     end = box[-1]
@@ -181,7 +181,7 @@ def judge(recording: Recording, config: Config) -> dict[str, Any]:
         "inside": int(inside),
         "moved": moved,
         "slip": slip,
-        "rmse": rms(force - config.law.desired_force),
+        "rmse": rms(force - config.desired_force),
         "bounces": int(np.sum(touching[:-1] & ~touching[1:])),
         "switches": int(np.sum(np.abs(np.diff(recording["phase"][time < RELEASED])))),
         "contact": float(time[np.argmax(recording["phase"] > 0)]),

@@ -8,6 +8,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report.tables import by_case
 
 from .experiment import RELEASED, SIZES
 
@@ -96,5 +97,4 @@ def _draw_gains(gains: Any, recordings: Recordings, metrics: AllMetrics, config:
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     columns = {"runs": "runs", "successes": "successes", "slip": "largest slip [m]", "rmse": "RMS force error [N]",
                "bounces": "bounces", "switches": "switches", "least_moved": "least way [m]"}  # fmt: skip
-    rows = [{"case": case} | {text: metrics[case].get(key) for key, text in columns.items()} for case in recordings]
-    return {"T1.F": pd.DataFrame(rows)}
+    return {"T1.F": by_case(metrics, columns, recordings)}

@@ -9,15 +9,15 @@ import pandas as pd
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2.balloon_movement.experiment import path
-from dexrepro.chapters.chapter2.batch import controlled_by, grouped_laws
+from dexrepro.chapters.chapter2.batch import at, controlled_by, grouped_laws
 from dexrepro.chapters.chapter2.gain_search import experiment as gain_search
 from dexrepro.chapters.chapter2.measures import Array
-from dexrepro.control.force_control import ForceControl, IntegralForceControl
 from dexrepro.control.holding_reference import FadeIn
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.sensor import smoothing
 
 measure = gain_search.measure
+FADED = ("force", "force_integral")  # laws that would otherwise step at contact
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
@@ -39,9 +39,10 @@ def _force_rmse(runs: pd.DataFrame, config: Config, noise: np.random.Generator) 
     """Root mean square [N] after ``settled`` of each run: the gripper follows like the servo's joints."""
     dt, w, desired = config.step, config.servo.frequency, config.desired_force
     k = runs["object_stiffness"].to_numpy()
-    laws = [(part, _faded(law, config)) for part, law in grouped_laws(runs, dt)]
+    kinds = runs["law"].to_numpy()
+    laws = [(part, _faded(law, config) if kinds[part.start] in FADED else law) for part, law in grouped_laws(runs, dt)]
     for _, law in laws:
-        law.reset(np.zeros(1))
+        law.reset(at(np.zeros(1), 0.0))
     position, velocity, reference, sensed = (np.zeros(len(runs)) for _ in range(4))
     square, share, steps = np.zeros(len(runs)), smoothing(config.sensor.cutoff, dt), round(config.duration / dt)
     partner = [path(config.path, i * dt)[1] for i in range(steps)]
@@ -50,7 +51,7 @@ def _force_rmse(runs: pd.DataFrame, config: Config, noise: np.random.Generator) 
         force = np.maximum(0.0, config.contact_force + k * (partner[i] - position))
         sensed += share * (force + disturbance[i] - sensed)
         for part, law in laws:
-            reference[part] = law(position[part], sensed[part])
+            reference[part] = law(at(position[part], sensed[part]))
         velocity += dt * (w * w * (reference - position) - 2 * w * velocity)
         position = position + dt * velocity
         if i * dt >= config.settled:
@@ -59,8 +60,6 @@ def _force_rmse(runs: pd.DataFrame, config: Config, noise: np.random.Generator) 
     return result
 
 
-def _faded(law: Any, config: Config) -> Any:
-    if not isinstance(law, ForceControl | IntegralForceControl):
-        return law
+def _faded(law: Any, config: Config) -> FadeIn:
     run = config.run
     return FadeIn(law=law, smoothing_rate=run.smoothing_rate, smoothing_power=run.smoothing_power, dt=config.step)

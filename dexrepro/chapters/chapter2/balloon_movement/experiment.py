@@ -9,6 +9,7 @@ import numpy as np
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import balloon_pair
 from dexrepro.chapters.chapter2.measures import Array, force_error
+from dexrepro.control.motion import quintic
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import rms
 
@@ -19,15 +20,15 @@ stage = balloon_pair.stage
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
-    config = Config({**config, "law": config.laws[config.controller]})
+    config = Config({**config, "law": config.laws[config.controller] if config.law is None else config.law})
     tremor = Tremor(config.path.tremor, rng("tremor"))
     return balloon_pair.run(config, rng, lambda t: path(config.path, t) + tremor(t))
 
 
 def path(shape: Config, time: float) -> Array:
     """Displacement (3,) [m] of the leader's gripper: minimum jerk along a line, then laps of a circle across x."""
-    u = min(max((time - shape.line_start) / (shape.line_end - shape.line_start), 0.0), 1.0)
-    share, radius, (x, y, z) = u**3 * (10 - 15 * u + 6 * u * u), shape.radius, shape.line
+    share, _ = quintic(time - shape.line_start, shape.line_end - shape.line_start)
+    radius, (x, y, z) = shape.radius, shape.line
     angle = 2 * math.pi * shape.laps * _eased((time - shape.circle_start) / (shape.laps * shape.period), shape.ramp)
     return np.array((share * x, share * y + radius * math.sin(angle), share * z + radius * (1 - math.cos(angle))))
 

@@ -35,7 +35,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     rows = [
         {
             "case": case,
-            "law": config.cases[case].controller.replace("_", " "),
+            "law": (case if config.cases[case].law else config.cases[case].controller).replace("_", " "),
             "gains": "tuned" if case.startswith("tuned") else "rescaled" if case == "soft_proposed" else "printed",
             "k_o [N/m]": config.cases[case].stiffness,
             "regulation (2.8), (2.9)": "yes" if config.cases[case].regulation else "no",

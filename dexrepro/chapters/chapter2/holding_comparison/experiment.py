@@ -18,7 +18,7 @@ scene = planar_pair.scene
 
 def simulate(config: Config, rng: Rng) -> Recording:
     with scene(config) as world:
-        return planar_pair.run(world, config, config.law or config.laws[config.controller])
+        return planar_pair.run(world, config, config.laws[config.controller] if config.law is None else config.law)
 
 
 def measure(recording: Recording, config: Config) -> Metrics:

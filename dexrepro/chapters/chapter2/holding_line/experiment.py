@@ -9,6 +9,7 @@ import numpy as np
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter2 import planar_pair
 from dexrepro.chapters.chapter2.measures import force_error, mean
+from dexrepro.control.contract import build
 from dexrepro.control.holding_reference import KnownMovement
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import rms
@@ -25,7 +26,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
         movement = KnownMovement(
             movement=lambda: (config.rest_length + partner.x, partner.vx), stiffness=config.stiffness, dt=config.step
         )
-        return planar_pair.run(world, config, config.law(estimation=movement))
+        return planar_pair.run(world, config, build(config.law, estimation=movement))
 
 
 def measure(recording: Recording, config: Config) -> Metrics:

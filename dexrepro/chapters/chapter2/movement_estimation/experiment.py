@@ -11,6 +11,7 @@ from dexrepro.chapters.chapter2 import planar_pair
 from dexrepro.chapters.chapter2.measures import force_error, mean
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import last_outside, rms
+from dexrepro.physics.drive import HoldingDrive
 
 RATE = 50.0
 SETTLED = 20.0  # s, from here on a run counts as settled
@@ -28,7 +29,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
 def measure(recording: Recording, config: Config) -> Metrics:
     time, late, early = recording.time, recording.between(SETTLED), recording.between(0, 10)
     force, desired = recording["follower.force"][:, 0], config.desired_force
-    rest, stiffness, velocity = recording["estimate"].T
+    rest, stiffness, velocity = recording.series.get("estimate", np.full((time.size, 3), np.nan)).T
     error = rest - recording["rest_position"]
     residual = error - desired * (1 / stiffness - 1 / config.stiffness)
     true_velocity = np.gradient(recording["rest_position"], time) if time.size > 1 else np.zeros(time.size)
@@ -55,9 +56,10 @@ def _slope(true: Any, estimated: Any) -> float | None:
 def _replay(recording: Recording, config: Config) -> float:
     """Largest difference [m] of the reference when the law alone is fed the arm's own position and force."""
     start = recording.between(0, 10)
-    law, positions = config.law, recording["follower.tip"][start, 0].tolist()
-    law.reset(positions[0])
-    replayed = [law(x, f) for x, f in zip(positions, recording["follower.force"][start, 0].tolist())]
+    law, times = HoldingDrive(config.law), recording.time[start].tolist()
+    positions, forces = (recording[f"follower.{name}"][start, 0].tolist() for name in ("tip", "force"))
+    law.reset(times[0], positions[0])
+    replayed = [law(*sample) for sample in zip(times, positions, forces)]
     return float(np.abs(np.array(replayed) - recording["reference"][start, 0]).max())
 
 

@@ -14,7 +14,7 @@ CLAIMS = (
         greater(f"{CLASSES}.wide.train_accuracy", 0.98),
         by_construction="Cornell's data, relabelled, is not available: synthetic scenes whose difficulty is ours.",
         where="3.4.2.3",
-        note="98.7 % with one seed of the network, and 92 % on new scenes.",
+        note="With one seed of the network; fewer of the new scenes are told right (Fig. 3.C).",
     ),
     Claim(
         "C3.20",
@@ -22,7 +22,7 @@ CLAIMS = (
         "Grasps outside the safety region can be told from those inside: at most a tenth of them passes for safe.",
         less(f"{CLASSES}.wide.unsafe_called_safe", 0.1),
         where="3.4.2.2",
-        note="2 of 104. Needs a patch that reaches beyond the safety margin (C3.20b) and enough scenes: 200 were taken "
+        note="Needs a patch that reaches beyond the safety margin (C3.20b) and enough scenes: 200 were taken "
         "after 150 had let 7 of 60 pass.",
     ),
     Claim(

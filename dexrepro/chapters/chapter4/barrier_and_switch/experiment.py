@@ -7,6 +7,7 @@ import numpy as np
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter4 import two_link
 from dexrepro.chapters.chapter4.measures import tracking
+from dexrepro.control.contract import memory
 from dexrepro.experiment import Config, Metrics, Recording
 
 RATE = 50.0
@@ -27,7 +28,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     metrics |= tracking(recording.time, recording["error"], recording["usage"], recording["torque"])
     now = recording.between(config.task.duration - config.task.period)
     energy = float(recording["feature_energy"][now].mean())
-    network = config.law.keywords["network"]
+    network = memory(config.law)
     return metrics | {
         "nodes": int(recording["nodes"][-1]),
         "smallest_share": float(recording["share"].min()),

@@ -9,6 +9,7 @@ import pandas as pd
 
 from dexrepro.control.global_adaptive import Switch
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "4.3": Figure(
@@ -108,7 +109,6 @@ TURNS = (
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
     found = {case: numbers for case, numbers in metrics.items() if case in config.cases}
-    rows = [{"case": case, **{label: m.get(name) for name, label in COLUMNS.items()}} for case, m in found.items()]
     turns = []
     for claim, change, case, metric, against in TURNS:
         if case not in found or (against is not None and against not in found):
@@ -126,7 +126,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
                 "claim holds": holds,
             }
         )
-    return {"T4.B": pd.DataFrame(rows), "T4.S": pd.DataFrame(turns)}
+    return {"T4.B": by_case(found, COLUMNS), "T4.S": pd.DataFrame(turns)}
 
 
 def _holds(value: float | None, limit: float | None, below: bool) -> str:

@@ -9,7 +9,6 @@ from dexrepro.chapters.chapter4 import payload_arm
 from dexrepro.chapters.chapter4.measures import Array
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms_length
-from dexrepro.networks import Lattice
 from dexrepro.robots import kinematics
 from dexrepro.robots.baxter import baxter
 from dexrepro.robots.rotations import rotation_error
@@ -63,7 +62,7 @@ def _hand_tilt(positions: Array) -> float:
 def _reach_of_lattice(recording: Recording, config: Config) -> Metrics:
     """How strongly a fixed network responds in each phase, and how many points lie within its box of tip positions."""
     basis = None if config.network is None else config.network.keywords["basis"]
-    if not isinstance(basis, Lattice) or config.mode == "zero":
+    if basis is None or basis.grows or config.mode == "zero":
         return {}
     phase, activation = recording["phase"], recording["activation"]
     corners = basis.centres[:: 2**7, :7]  # every combination of joint angles once

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "4.11": Figure(
@@ -127,9 +127,4 @@ COLUMNS = {
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
-    rows = [
-        {"case": case, **{label: found.get(name) for name, label in COLUMNS.items()}}
-        for case, found in metrics.items()
-        if case in config.cases
-    ]
-    return {"T4.C": pd.DataFrame(rows)}
+    return {"T4.C": by_case(metrics, COLUMNS, config.cases)}

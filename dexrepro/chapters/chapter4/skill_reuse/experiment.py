@@ -8,6 +8,7 @@ from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter4 import two_link
 from dexrepro.chapters.chapter4.measures import between, tracking
 from dexrepro.chapters.chapter4.two_link import ELLIPSE, FROZEN, large
+from dexrepro.control.contract import memory
 from dexrepro.experiment import Config, Metrics, Recording
 
 RATE = 50.0
@@ -35,7 +36,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
 
 
 def _network(recording: Recording, config: Config) -> Metrics:
-    network = config.law.keywords["network"]
+    network = memory(config.law)
     segment, nodes = recording["segment"], recording["nodes"]
     now = segment == ELLIPSE
     if network is None or not now.any():

@@ -41,8 +41,8 @@ CLAIMS = (
             "u = 0.1, a K_s that switches the network off, and an exact model": within_limits("printed_forgetting"),
             "u = 0": within_limits("printed_no_robust"),
         },
-        searched="u of 0, 0.1 and 1, K_s from 0.01 to 200, K_tau of 0.1 and 0.2, masses, friction and contact force known "
-        "exactly or not",
+        searched="u of 0, 0.1 and 1, K_s from 0.01 to 200, K_tau of 0.1 and 0.2, masses, friction and contact force "
+        "known exactly or not",
         where="5.4.2",
         note="The sign of the network's term and u of (5.44), which is not defined: with the sign corrected the errors "
         "stay inside for u of 0 to 0.3, not for 1; with the printed sign they leave for u = 0 as well (T5.G), unless "

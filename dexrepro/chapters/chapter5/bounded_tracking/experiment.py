@@ -9,6 +9,7 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import letters, pen
+from dexrepro.control.contract import build
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
@@ -26,7 +27,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     nominal = pen.model(config)
     centres = pen.node_centres(config, target, config.network.nodes, rng("nodes"))
     learner = pen.network(config, centres, target) if config.network.enabled else None
-    recording = pen.track(config, target, pen.law(config, nominal, learner), nominal)
+    recording = pen.track(config, target, build(config.law, model=nominal, network=learner), nominal)
     if config.picture == config.hand.letter:
         recording.images["picture"] = _picture(recording, config)
     return recording

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from dexrepro.chapters.chapter5 import pen
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
+from dexrepro.report.tables import by_case
 from dexrepro.robots.pen_arm import pen_arm_tip
 
 from .experiment import VIEW
@@ -168,11 +168,4 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
         "torque_max": "largest torque [N m]",
         "torque_step": "torque change a step RMS [N m]",
     }
-    return {
-        table: pd.DataFrame(
-            {"case": case, **{text: metrics[case][name] for name, text in names.items()}}
-            for case in cases
-            if case in metrics
-        )
-        for table, cases in (("T5.G", LAWS), ("T5.H", SENSITIVITY))
-    }
+    return {"T5.G": by_case(metrics, names, LAWS), "T5.H": by_case(metrics, names, SENSITIVITY)}

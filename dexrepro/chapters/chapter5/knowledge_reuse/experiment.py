@@ -8,6 +8,7 @@ import pandas as pd
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import pen
 from dexrepro.chapters.chapter5.bounded_tracking import experiment as bounded_tracking
+from dexrepro.control.contract import build
 from dexrepro.experiment import Config, Metrics, Recording
 
 
@@ -21,7 +22,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
         centres = np.concatenate([centres, pen.node_centres(config, target, added, generator)])
         learner = pen.network(config, centres, target)
         learner.reset(weights if config.network.keep else None)
-        recording = pen.track(config, target, pen.law(config, nominal, learner), nominal)
+        recording = pen.track(config, target, build(config.law, model=nominal, network=learner), nominal)
         if config.network.keep:
             weights = learner.weights.copy()
         squared = np.sum(recording["error"] ** 2, axis=1)

@@ -144,7 +144,8 @@ CLAIMS = (
         printed=beyond_dmp_plus("idmp60", PRINTED_SIGN),
         credits="features that depend on the kernels nonlinearly",
         where="Remark 5.2",
-        note="As many plain kernels, the control, lower it as far: {letter_accuracy.default.n5.dmp_equal.mse:.1e} against "
+        note="As many plain kernels, the control, lower it as far: "
+        "{letter_accuracy.default.n5.dmp_equal.mse:.1e} against "
         "{letter_accuracy.default.n5.idmp60.mse:.1e} cm^2. Not to any accuracy: double precision and remaining tremor "
         "end it.",
     ),

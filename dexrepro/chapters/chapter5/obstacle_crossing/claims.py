@@ -62,8 +62,8 @@ CLAIMS = (
             ),
         },
         where="5.5.3",
-        note="The path changes less at every step in {obstacle_crossing.default.skill2.shrinks_always:.0%} of the draws "
-        "with two blocks and {obstacle_crossing.default.skill3.shrinks_always:.0%} with three; the book shows one draw.",
+        note="The path changes less at every step in {obstacle_crossing.default.skill2.shrinks_always:.0%} of the "
+        "draws with two blocks and {obstacle_crossing.default.skill3.shrinks_always:.0%} with three; the book shows one.",
     ),
     Claim(
         "C5.23",
@@ -103,8 +103,8 @@ CLAIMS = (
         searched="goals at the height where the demonstration ends and at that of its start, 0.2 mm lower",
         credits="the changed goal g",
         where="(5.1), 5.5.3",
-        note="The forcing of an axis is scaled by the difference of two heights that agree but for the hand's noise. With "
-        "goals where the demonstration ends the paths clear the obstacle by "
+        note="The forcing of an axis is scaled by the difference of two heights that agree but for the hand's noise. "
+        "With goals where the demonstration ends the paths clear the obstacle by "
         "{obstacle_crossing.printed_amplitude.goals3.clearance:.2f} cm and end "
         "{obstacle_crossing.printed_amplitude.goals3.end_error:.2f} cm off; sideways, where the goals differ by far "
         "more than the demonstrated start and end, they swing widely.",

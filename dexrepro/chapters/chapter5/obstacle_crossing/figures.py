@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from dexrepro.chapters.chapter5 import crossing
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
 from dexrepro.humans.crossing import obstacle_boxes
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "5.8": Figure(
@@ -56,9 +56,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
             f"goals{blocks}.free": f"{blocks} blocks: share of paths that touch nothing",
             f"goals{blocks}.end_error": f"{blocks} blocks: largest distance from the goal [cm]",
         }
-    tables["T5.F"] = pd.DataFrame(
-        {"variant": case, **{text: values.get(key) for key, text in names.items()}} for case, values in metrics.items()
-    )
+    tables["T5.F"] = by_case(metrics, names, first="variant")
     return tables
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import crossing, pen
+from dexrepro.control.contract import build
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.crossing import clearance, obstacle_boxes
 from dexrepro.physics.rendering import Camera
@@ -27,7 +28,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     nominal = pen.model(config)
     centres = pen.node_centres(config, target, config.network.nodes, rng("nodes"))
     learner = pen.network(config, centres, target)
-    recording = pen.track(config, target, pen.law(config, nominal, learner), nominal)
+    recording = pen.track(config, target, build(config.law, model=nominal, network=learner), nominal)
     if config.picture:
         recording.images.update(_film(recording, config))
     return recording

@@ -113,7 +113,7 @@ def _drive(config: Config, world: World, time: Array, path: Array) -> Recording:
     probes = {f"distance_{name}": lambda name=name: world.distance("arm", name, 0.6) for name in BOXES}
     if config.contacts:
         probes |= {f"contact_{name}": lambda name=name: world.contact_force("arm", name) for name in BOXES}
-    controller = arms.follow(model, joints, config.frequency, config.step, config.duration)
+    controller = arms.follow(model, joints, config.law, config.step, config.duration)
     run = world.run(config.duration, {"arm": controller}, probes=probes, record_every=config.record_every)
     run.frames["ik"] = pd.DataFrame({"error": [error]})
     return run

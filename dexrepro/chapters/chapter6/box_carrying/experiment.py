@@ -61,7 +61,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
                 _arm(side), model, time[::every], tips[::every, i], turns[::every, i], "pose", start, config.rest_gain
             )
             world.arm(side).reset(joints(0.0) + config.perturbation)
-            controllers[side] = arms.follow(model, joints, config.frequency, config.physics_step, time[-1])
+            controllers[side] = arms.follow(model, joints, config.law, config.physics_step, time[-1])
             error = max(error, left)
         middle = ends.mean(axis=1)
 

@@ -7,6 +7,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Film, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "6.12": Figure(
@@ -32,10 +33,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
         "min_palm_force": "smallest palm force [N]",
         "tracking_error": "largest palm error [cm]",
     }
-    rows = [
-        {"case": case, **{text: numbers[key] for key, text in columns.items()}} for case, numbers in metrics.items()
-    ]
-    return {"T6.Sd": pd.DataFrame(rows)}
+    return {"T6.Sd": by_case(metrics, columns)}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:

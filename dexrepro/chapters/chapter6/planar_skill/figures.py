@@ -8,6 +8,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter6 import plane
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report.tables import by_case
 
 from .experiment import lies_inside
 
@@ -44,10 +45,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
         "clearance_extended_2_max": "extended primitive 2, largest clearance [cm]",
         "late_drift_max": "largest drift from the goal after the end [cm]",
     }
-    rows = [
-        {"variant": case, **{text: numbers[key] for key, text in shown.items()}} for case, numbers in metrics.items()
-    ]
-    return {"T6.Sa": pd.DataFrame(rows)}
+    return {"T6.Sa": by_case(metrics, shown, first="variant")}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:

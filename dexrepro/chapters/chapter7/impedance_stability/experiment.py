@@ -28,7 +28,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     metrics["stable"] = int(bool(metrics["finished"]) and (metrics["torque_travel"] or 0.0) < CHATTER)
     if not metrics["stable"]:  # the size of a limit cycle changes with the last digits
         metrics["rms_error"] = metrics["largest_error"] = None
-    if any(config.initial_error):
+    if any(config.initial_error) and "filtered_error" in recording:
         metrics |= lyapunov_metrics(recording, config)
     else:
         early = recording.time < 0.1

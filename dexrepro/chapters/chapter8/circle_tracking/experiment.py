@@ -9,11 +9,13 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.arrays import Rng
-from dexrepro.chapters.chapter8.task import TaskController, beyond, circle, two_link
-from dexrepro.control.barrier_tracking import BarrierTracking, barrier_energy
+from dexrepro.chapters.chapter8.task import beyond, circle, two_link
+from dexrepro.control.barrier_tracking import barrier_energy
+from dexrepro.control.contract import build, channels
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import rms, rms_length
 from dexrepro.networks import AdaptiveNetwork, GrowingGaussians
+from dexrepro.physics.drive import EndPointDrive
 from dexrepro.physics.elements import JointLoad, joint_friction
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
@@ -37,30 +39,28 @@ def simulate(config: Config, rng: Rng) -> Recording:
     gravity = (0.0, -config.gravity, 0.0)
     arm = two_link(config.arm)
     factor = match_rates(config) if config.match else 1.0
-    law: Any = config.barrier(networks=config.networks)
-    if config.controller == "hinfinity":
-        law = config.hinfinity(RigidBodyModel(arm, gravity, mass_error=config.model_error))
-    controller = TaskController(law, circle(config.path), RigidBodyModel(arm, gravity))
+    nominal = RigidBodyModel(arm, gravity, mass_error=config.model_error)
+    chosen = config[config.controller] if config.law is None else config.law
+    law, networks = build(chosen, networks=config.networks, model=nominal), config.networks
+    drive = EndPointDrive(law, circle(config.path), RigidBodyModel(arm, gravity))
+    learns = config.law is None and config.controller == "barrier"
     probes: dict[str, Callable[[], Any]] = {
-        "reference": lambda: controller.reference.position,
-        "error": lambda: controller.error,
+        "reference": lambda: drive.desired.position,
+        "error": lambda: drive.error,
+        **channels(law, "nodes", "network_force", "feature_power"),
     }
-    if isinstance(law, BarrierTracking):
-        probes["nodes"] = lambda: law.nodes
-        probes["network_force"] = lambda: law.network_force
-        probes["feature_power"] = lambda: law.feature_power
     with scene(config) as world:
         recording = world.run(
             config.duration,
-            controllers={"arm": controller},
+            controllers={"arm": drive},
             probes=probes,
-            stop=beyond(controller, config.bound) if isinstance(law, BarrierTracking) else None,
+            stop=beyond(drive, config.bound) if learns else None,
             record_every=config.record_every,
         )
-    if isinstance(law, BarrierTracking):
-        recording.frames["rate"] = pd.DataFrame({"gravity": [float(law.networks[2].gain)], "factor": [factor]})
-        if isinstance(law.networks[2].basis, GrowingGaussians):
-            recording.frames["nodes"] = pd.DataFrame(law.networks[2].basis.centres.copy(), columns=["x", "y"])
+    if learns:
+        recording.frames["rate"] = pd.DataFrame({"gravity": [float(networks[2].gain)], "factor": [factor]})
+        if networks[2].basis.grows:
+            recording.frames["nodes"] = pd.DataFrame(networks[2].basis.centres.copy(), columns=["x", "y"])
     return recording
 
 
@@ -97,9 +97,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
     for name, part in (("rms", steady), ("early", early)):
         for axis, letter in enumerate("xy"):
             metrics[f"{name}_{letter}"] = 1e3 * rms(part[:, axis])
-    if "nodes" in recording:
+    if "network_force" in recording:
         counts = recording["nodes"][-1].astype(int)
-        features = getattr(config.networks[2].basis, "features_per_node", 1)
+        features = config.networks[2].basis.features_per_node
         force = recording["network_force"][recording.between(config.settled)]
         power = recording["feature_power"][recording.between(config.settled)]
         metrics |= {f"nodes_{name}": int(count) for name, count in zip(("d", "c", "g"), counts)}

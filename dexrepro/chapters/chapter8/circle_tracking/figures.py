@@ -10,6 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "8.4": Figure(
@@ -260,14 +261,9 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
                "early_y": "rms e_y, early [mm]", "nodes": "nodes", "features": "features",
                "network_force": "rms network force [N]", "feature_power": "feature power [-]",
                "gain": "adaptation gain [-]"}  # fmt: skip
-    rows = [
-        {"case": case, **{text: metrics[case].get(name) for name, text in columns.items()}}
-        for case in recordings
-        if case in metrics
-    ]
     return {
         "T8.1": _parameters(config),
-        "T8.A": pd.DataFrame(rows),
+        "T8.A": by_case(metrics, columns, recordings),
         "T8.Sa": sensitivity_table(VARIANTS, metrics, columns),
     }
 

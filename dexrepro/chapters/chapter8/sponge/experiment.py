@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,15 +11,15 @@ from scipy.optimize import brentq
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter8 import learning_study
-from dexrepro.chapters.chapter8.task import TaskController, beyond
-from dexrepro.control.impedance_learning import LearnedGain
+from dexrepro.chapters.chapter8.task import beyond, displaced
+from dexrepro.control.contract import build, channels
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
-from dexrepro.control.task_space import Motion
+from dexrepro.control.motion import Motion, Path
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.networks import GrowingGaussians
+from dexrepro.physics.drive import EndPointDrive, Posture, limited
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.model import RigidBodyModel
-from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter
@@ -46,76 +45,51 @@ def scene(config: Config) -> World:
     return world
 
 
-def approach(settings: Any) -> Callable[[float], Motion]:
+def approach(settings: Any) -> Path:
     """The desired path of Eq. (8.48) over time [s]: straight down towards a height, exponentially."""
     x, y = settings.place
     depth, end = settings.descent, settings.end
 
-    def motion(time: float) -> Motion:
+    def motion(time: float) -> Motion[Array]:
         part = depth * math.exp(-time)
         return Motion(np.array((x, y, end + part)), np.array((0.0, 0.0, -part)), np.array((0.0, 0.0, part)))
 
     return motion
 
 
-class RedundantController(TaskController):
-    """The task force on an arm with more joints than the task has axes, with the arm's own gravity compensation.
-
-    The remaining joints are held near their start by accelerations stiffness (q_0 - q) - 2 sqrt(stiffness) dq [1/s^2],
-    projected so that they do not move the task. Gravity and the inertia of this projection are the arm's own, exact;
-    the law that gives the task force knows neither. limits: largest torques [N m].
-    """
-
-    def __init__(
-        self, *arguments: Any, start: Array, stiffness: float, compensate: bool, limits: Array, **more: Any
-    ) -> None:
-        super().__init__(*arguments, **more)
-        self.start, self.stiffness, self.damping = start, stiffness, 2.0 * math.sqrt(stiffness)
-        self.compensate, self.limits = compensate, limits
-
-    def __call__(self, sense: Sense) -> Array:
-        q, dq = sense.position, sense.velocity
-        jacobian, mass = self.jacobian(q), self.model.mass_matrix(q)
-        wanted = self.stiffness * (self.start - q) - self.damping * dq
-        coupling = jacobian @ np.linalg.solve(mass, jacobian.T)
-        force = self.force(sense) - np.linalg.solve(coupling, jacobian @ wanted)
-        torque = jacobian.T @ force + mass @ wanted
-        if self.compensate:
-            torque += self.model.gravity(q)
-        return np.minimum(np.maximum(torque, -self.limits), self.limits)
-
-
 def simulate(config: Config, rng: Rng) -> Recording:
     interaction = config.interaction
-    controller = RedundantController(
-        config.law, approach(config.path), RigidBodyModel(baxter("right")), interaction, axis=2,
-        start=np.array(config.start), stiffness=config.posture_stiffness, compensate=config.gravity_compensation,
-        limits=np.array(config.torque_limits),
+    model, limits = RigidBodyModel(baxter("right")), np.array(config.torque_limits)
+    law = build(config.law, model=model)
+    # Gravity and the inertia that the posture needs are the arm's own, exact; the law knows neither.
+    drive = EndPointDrive(
+        law, approach(config.path), model, displaced=displaced(interaction, axis=2),
+        posture=Posture(model, np.array(config.start), config.posture_stiffness),
     )  # fmt: skip
     with scene(config) as world:
         recording = world.run(
             config.duration,
-            controllers={"arm": controller},
+            controllers={"arm": limited(drive, limits, model if config.gravity_compensation else None)},
             control_period=config.control_period,
             probes={
-                "reference": lambda: controller.reference.position,
-                "path": lambda: controller.path.position,
-                "error": lambda: controller.error,
-                "nodes": lambda: config.law.nodes,
+                "reference": lambda: drive.desired.position,
+                "path": lambda: drive.path.position,
+                "error": lambda: drive.error,
                 "gain": lambda: interaction.gain.gain,
                 "phase": lambda: float(interaction.gain.phase),
+                **channels(law, "nodes"),
             },
-            stop=beyond(controller, config.bound),
+            stop=beyond(drive, config.bound),
             record_every=config.record_every,
             on_divergence="stop",
         )
         if config.pictures:
             staged = stage(world, recording, config)
             recording.images = {f"at_{t:g}s": world.snapshot(staged, t, VIEW, (480, 400)) for t in config.pictures}
-    gain = interaction.gain
-    if isinstance(gain, LearnedGain) and gain.learned is not None:
-        model = InteractionModel(config.sponge.stiffness, config.sponge.damping, config.exosystem)
-        recording.frames["iterates"] = learning_study.iterates(gain, model)
+    gain: Any = interaction.gain
+    if gain.learned is not None:
+        truth = InteractionModel(config.sponge.stiffness, config.sponge.damping, config.exosystem)
+        recording.frames["iterates"] = learning_study.iterates(gain, truth)
         if config.noise.draws:
             recording.frames["noise"] = learning_study.noise_study(
                 gain, config.noise.draws, config.noise.force, config.noise.position, rng("noise")
@@ -139,7 +113,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
     finished = recording.status == "finished"
     used = float(np.max(error / (1e3 * np.array(config.bound))))
     last = recording.between(config.duration - 0.5)
-    counts = recording["nodes"].astype(int)
+    counts = np.zeros((len(recording.time), 1), int)  # a law that reports none has none
+    if "nodes" in recording:
+        counts = recording["nodes"].astype(int).reshape(len(counts), -1)
     settled = counts[recording.between(config.duration - 5.0)]
     metrics: Metrics = {f"max_error_{axis}": float(value) for axis, value in zip("xyz", error)}
     metrics |= {f"nodes_{name}": int(count) for name, count in zip("dcg", counts[-1])}

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter8 import learning_study
-from dexrepro.chapters.chapter8.task import TaskController, beyond, circle, two_link
-from dexrepro.control.impedance_learning import TRANSFERRING, InteractionLaw, LearnedGain
+from dexrepro.chapters.chapter8.task import beyond, circle, displaced, two_link
+from dexrepro.control.contract import build
+from dexrepro.control.impedance_learning import TRANSFERRING, InteractionLaw
 from dexrepro.control.interaction_optimum import InteractionModel, steady_cost, steady_fraction
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.physics.drive import EndPointDrive
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
@@ -40,25 +42,26 @@ def scene(config: Config) -> World:
 def simulate(config: Config, rng: Rng) -> Recording:
     model = RigidBodyModel(two_link(config.arm), (0.0, -config.gravity, 0.0))
     interaction: InteractionLaw = config.interaction
-    controller = TaskController(config.law, circle(config.path), model, interaction, axis=0)
+    law = build(config.law, model=model)
+    drive = EndPointDrive(law, circle(config.path), model, displaced=displaced(interaction, axis=0))
     with scene(config) as world:
         recording = world.run(
             config.duration,
-            controllers={"arm": controller},
+            controllers={"arm": drive},
             probes={
-                "reference": lambda: controller.reference.position,
-                "reference_speed": lambda: float(controller.reference.velocity[0]),
-                "path": lambda: controller.path.position,
-                "error": lambda: controller.error,
+                "reference": lambda: drive.desired.position,
+                "reference_speed": lambda: float(drive.desired.velocity[0]),
+                "path": lambda: drive.path.position,
+                "error": lambda: drive.error,
                 "gain": lambda: interaction.gain.gain,
                 "phase": lambda: float(interaction.gain.phase),
                 "desired_force": lambda: interaction.desired_force,
             },
-            stop=beyond(controller, config.bound),
+            stop=beyond(drive, config.bound),
             on_divergence="stop",
         )
-    gain = interaction.gain
-    if isinstance(gain, LearnedGain) and gain.learned is not None:
+    gain: Any = interaction.gain
+    if gain.learned is not None:
         recording.frames["iterates"] = learning_study.iterates(gain, true_model(config))
         if config.noise.draws:
             recording.frames["noise"] = learning_study.noise_study(

@@ -13,6 +13,7 @@ from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING, soft_transfer
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "8.2": Figure(
@@ -269,12 +270,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
                "gain_x": "K_x [N/m]", "gain_s": "K_s [N]", "gain_error_x": "error of K_x [-]",
                "gain_error_s": "error of K_s [-]", "iterations": "iterations",
                "violated_at": "violated at [s]"}  # fmt: skip
-    rows = [
-        {"case": case, **{text: metrics[case].get(name) for name, text in columns.items()}}
-        for case in recordings
-        if case in metrics
-    ]
-    tables = {"T8.B": pd.DataFrame(rows), "T8.Sb": sensitivity_table(VARIANTS, metrics, columns)}
+    tables = {"T8.B": by_case(metrics, columns, recordings), "T8.Sb": sensitivity_table(VARIANTS, metrics, columns)}
     if "soft" in recordings:
         frames = recordings["soft"].frames
         tables["T8.2"] = learning_study.headed(frames["iterates"], "N")

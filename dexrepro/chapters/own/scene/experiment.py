@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.own.drivers import driver
-from dexrepro.chapters.own.paths import Path, leader_path
+from dexrepro.chapters.own.paths import leader_path
 from dexrepro.config import InputError
+from dexrepro.control.motion import Path
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms
 from dexrepro.physics.elements import Elastic, Ends
@@ -107,12 +108,12 @@ class _Carried:
 def simulate(config: Config, rng: Rng) -> Recording:
     path, offset = leader_path(config), np.array(config.offset, dtype=float)
     with scene(config) as world:
-        controller = driver(config.law, config, path, np.array(world.arms["arm"].q))
+        controller, wanted = driver(config, path, np.array(world.arms["arm"].q))
         length = np.linalg.norm(offset)
         recording = world.run(
             config.duration,
             {"arm": controller},
-            probes={"leader.pose": lambda: path(world.time).position, "reference": lambda: controller.reference},
+            probes={"leader.pose": lambda: path(world.time).position, "reference": lambda: wanted(world.time)},
             on_divergence="stop",
         )
     force = recording["arm.force"]

@@ -1,0 +1,294 @@
+"""What the page of a chapter shows, gathered from its results: experiments, figures, claims, errata, runs."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from PIL import Image
+
+from dexrepro import chapters
+from dexrepro.claims import Claim, Erratum
+from dexrepro.config import compose_chapter, experiment_cases, provenance, resolved_block
+from dexrepro.experiment import Experiment
+from dexrepro.report import equations, explorer, parameters, relations, sources, studies, verdicts, words
+from dexrepro.report.damage import check_result
+from dexrepro.report.style import file_stem
+from dexrepro.storage import read_json
+
+SCALE = 1.7  # pixels a point of a figure
+THUMBNAIL = 240  # pixels
+OPEN_ROWS = 8  # a longer table is folded
+
+
+class Contents:
+    """One chapter. folder: of the report; pages point at lines of the code through ``code``."""
+
+    def __init__(
+        self, number: str, results: Path, folder: Path, code: sources.Sources, found: Mapping[str, Any]
+    ) -> None:
+        self.number, self.place, self.folder, self.code, self.studies = (
+            number,
+            results / f"chapter{number}",
+            folder,
+            code,
+            found,
+        )
+        self.chapter = chapters.load(number)
+        self.composed, self.origins = compose_chapter(number), provenance(number)
+        self.metrics: dict[str, Any] = {}
+        self.experiments: list[dict[str, Any]] = []
+        made = [e for e in self.chapter.experiments if (self.place / e.name / "run.json").exists()]
+        for experiment in made:
+            check_result(self.place / experiment.name, "metrics.json", "claims.json")
+            self.metrics |= read_json(self.place / experiment.name / "metrics.json")
+        self.definitions = relations.definitions(self.chapter.folder) if made else {}
+        self.errata = {item.id: self._erratum(item) for item in self.chapter.errata} if made else {}
+        self.experiments = [self._experiment(experiment) for experiment in made]
+        self.untestable = [
+            self._claim(claim.evaluate({}).as_dict(), claim) for claim in self.chapter.claims if claim.not_testable
+        ]
+
+    def page(self, runs: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+        """The values of the chapter's template."""
+        claims = [claim for entry in self.experiments for claim in entry["claims"]] + self.untestable
+        rows = [row for entry in self.experiments for row in entry["parameters"]]
+        placed = {item["id"] for entry in self.experiments for item in entry["errata"]}
+        return {
+            "number": self.number,
+            "title": self.chapter.title,
+            "fairness": getattr(self.chapter, "fairness", ""),
+            "experiments": self.experiments,
+            "claims": claims,
+            "score": verdicts.score(claims),
+            "symbols": parameters.index(self.composed, self.origins, rows),
+            "errata": list(self.errata.values()),
+            "other_errata": [item for item in self.errata.values() if item["id"] not in placed],
+            "untestable": self.untestable,
+            "runs": [run for run in runs if run["chapter"] == self.number],
+        }
+
+    def _line(self, identifier: str) -> dict[str, Any] | None:
+        found = self.definitions.get(identifier)
+        return self.code.link(*found) if found else None
+
+    # ------------------------------------------------------------------------------------------------- one experiment
+
+    def _experiment(self, experiment: Experiment) -> dict[str, Any]:
+        place, target = self.place / experiment.name, self.folder / "files" / experiment.name
+        target.mkdir(parents=True)
+        run, study = read_json(place / "run.json"), self._study(experiment.name, target)
+        files = []
+        for path in sorted([*place.glob("*.json"), place / "config.yaml", *place.glob("series/*")]):
+            copy(path, target / path.name)
+            files.append({"name": path.name, "path": f"files/{experiment.name}/{path.name}"})
+        written = {claim.id: claim for claim in self.chapter.claims}
+        claims = [
+            self._claim(entry, written.get(entry["id"]), study["claims"].get(entry["id"]) if study else None)
+            for entry in read_json(place / "claims.json")
+        ]
+        figures = [
+            self._figure(identifier, figure.caption, figure.alt, place, target)
+            for identifier, figure in experiment.figures.items()
+            if (place / "figures" / f"{file_stem(identifier)}.svg").exists()
+        ]
+        series = explorer.write(place, target, run["cases"], experiment.film)
+        factor = f", {run['real_time_factor']:.1f} times real time" if run["real_time_factor"] else ""
+        packages = ", ".join(f"{name} {version}" for name, version in run["packages"].items())
+        return {
+            "name": experiment.name,
+            "chapter": self.number,
+            "summary": experiment.summary,
+            "answer": verdicts.answer(claims),
+            "claims": claims,
+            "figures": _with_claims(figures, claims),
+            "other_claims": [c for c in claims if not any(concerns(c["figure"], f["id"]) for f in figures)],
+            "tables": [
+                self._table(identifier, title, place / "tables" / f"{identifier}.csv", target)
+                for identifier, title in experiment.tables.items()
+                if (place / "tables" / f"{identifier}.csv").exists()
+            ],
+            "films": [
+                _film(path, experiment, target)
+                for path in sorted(place.glob("animation/*.gif"))
+                if path.with_suffix(".png").exists()
+            ],
+            "study": study,
+            "series": series,
+            "parameters": parameters.table(experiment.name, self.composed, self.origins),
+            "references": [
+                {**vars(item), "ours": self.metrics.get(item.metric)}
+                for item in self.chapter.references
+                if item.metric.partition(".")[0] == experiment.name
+            ],
+            "errata": self._errata_of(experiment, claims),
+            "code": self._code(experiment),
+            "files": files,
+            "run": run,
+            "provenance": (
+                f"dexrepro {run['version']}, revision {run['revision'] or 'unknown'}, seed {run['seed']}; {packages}; "
+                f"Python {run['python']}; {run['machine']}; {run['wall']:.1f} s of one core{factor}"
+            ),
+        }
+
+    def _claim(
+        self, entry: Mapping[str, Any], claim: Claim | None, row: Mapping[str, Any] | None = None
+    ) -> dict[str, Any]:
+        """A claim as evaluated, with all that belongs to it."""
+        touching = relations.errata_of(claim, self.chapter.errata, self.composed) if claim else []
+        text = " ".join([entry["statement"], entry["note"], entry["where"], *(item.equation for item in touching)])
+        names = [name.split(".") for name in entry["values"]]
+        shown = {**entry, "study": row, "robustness": verdicts.robustness(row), "chapter": self.number}
+        return {
+            **shown,
+            "strength": verdicts.strength(shown),
+            "severe": verdicts.is_severe(shown),
+            "noticed": verdicts.noticed(shown),
+            "often": verdicts.often(shown),
+            "where": re.sub(r"^(?=\d)", "Sect. ", entry["where"]),
+            "errata": touching,
+            "equations": equations.numbers(text),
+            "cases": list(dict.fromkeys(part[1] for part in names if len(part) > 2)),
+            "line": self._line(entry["id"]),
+            "experiment": names[0][0] if names else "",
+        }
+
+    def _erratum(self, item: Erratum) -> dict[str, Any]:
+        evidence = [(name, self.metrics.get(name)) for name in item.evidence]
+        return {
+            **vars(item), "evidence": evidence, "equations": equations.numbers(item.equation),
+            "line": self._line(item.id), "chapter": self.number,
+        }  # fmt: skip
+
+    def _errata_of(self, experiment: Experiment, claims: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        """Errata that touch a claim of the experiment or rest on its metrics, without those of an earlier one."""
+        touching = {item.id for claim in claims for item in claim["errata"]}
+        before = {item["id"] for entry in self.experiments for item in entry["errata"]}
+        mine = [
+            item for item in self.errata.values()
+            if item["id"] in touching or any(name.startswith(f"{experiment.name}.") for name, _ in item["evidence"])
+        ]  # fmt: skip
+        return [item for item in mine if item["id"] not in before]
+
+    def _code(self, experiment: Experiment) -> dict[str, Any]:
+        """Lines of the experiment's functions and of the laws it names, and the equations that these mention."""
+        functions = [experiment.function(name) for name in ("scene", "simulate", "measure")]
+        block = [resolved_block(self.composed, experiment.name), experiment_cases(self.composed, experiment.name)]
+        laws = relations.laws(block)
+        own = {sources.place(thing) for thing in functions if thing}
+        texts = [path.read_text() for path in {path for path, _ in own}] + [law.__doc__ or "" for law in laws]
+        return {
+            "functions": [
+                {"name": thing.__name__, **self.code.link(*sources.place(thing))} for thing in functions if thing
+            ],
+            "laws": [{"name": law.__qualname__, **self.code.link(*sources.place(law))} for law in laws],
+            "equations": sorted(equations.numbers("\n\n".join(texts)), key=equations.place),
+        }
+
+    def _study(self, experiment: str, target: Path) -> dict[str, Any] | None:
+        found = self.studies.get(experiment)
+        if not found or not found["claims"]:
+            return None
+        path = studies.save(found, target / "study.svg")
+        return {**found, "svg": f"files/{target.name}/{path.name}", "finding": studies.finding(found)}
+
+    def _figure(self, identifier: str, caption: str, alt: str, place: Path, target: Path) -> dict[str, Any]:
+        stem = file_stem(identifier)
+        for suffix in (".svg", ".png"):
+            copy(place / "figures" / f"{stem}{suffix}", target / f"{stem}{suffix}")
+        _thumbnail(target / f"{stem}.png", target / f"{stem}.webp")
+        head = (target / f"{stem}.svg").read_text()
+        return {
+            "id": identifier,
+            "chapter": self.number,
+            "caption": caption,
+            "alt": alt or caption,
+            "svg": f"files/{target.name}/{stem}.svg",
+            "png": f"files/{target.name}/{stem}.png",
+            "thumbnail": f"files/{target.name}/{stem}.webp",
+            "kind": "picture" if "<image" in head else "plot",
+            "size": _size(head),
+        }
+
+    def _table(self, identifier: str, title: str, path: Path, target: Path) -> dict[str, Any]:
+        frame = pd.read_csv(path)
+        copy(path, target / path.name)
+        (target / f"{identifier}.tex").write_text(frame.to_latex(index=False, float_format="%.4g", escape=True))
+        base = f"files/{target.name}/{identifier}"
+        return {
+            "id": identifier,
+            "title": title,
+            "columns": [(words.cell(name), words.column_kind(frame[name])) for name in frame],
+            "rows": [[words.cell(value) for value in row] for row in frame.astype(object).to_numpy().tolist()],
+            "folded": len(frame) > OPEN_ROWS,
+            "csv": f"{base}.csv",
+            "tex": f"{base}.tex",
+        }
+
+
+def in_book_order(figures: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Figures by number, 2.9a after 2.9, those of our own (2.A) last."""
+
+    def place(figure: Mapping[str, Any]) -> tuple[int, str]:
+        rest = figure["id"].partition(".")[2]
+        digits = "".join(character for character in rest if character.isdigit())
+        return (int(digits) if digits else 999, rest)
+
+    return sorted(figures, key=place)
+
+
+def concerns(claimed: str, identifier: str) -> bool:
+    """Whether a claim about "2.8a" or "2.8, 2.9" is about the figure "2.8", and one about "2.8" about "2.8a"."""
+    parts = [part.strip() for part in claimed.replace(";", ",").split(",")]
+    panels = "abcdefgh"
+    return any(identifier in (part, part.rstrip(panels)) or identifier.rstrip(panels) == part for part in parts)
+
+
+def copy(source: Path, target: Path) -> None:
+    """A hard link, or a copy on another file system."""
+    try:
+        os.link(source, target)
+    except OSError:
+        shutil.copyfile(source, target)
+
+
+def _with_claims(figures: Sequence[dict[str, Any]], claims: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Each claim stands beside the first figure it is about; the others only refer to it."""
+    seen: set[str] = set()
+    for figure in figures:
+        about = [claim for claim in claims if concerns(claim["figure"], figure["id"])]
+        figure["claims"] = [claim for claim in about if claim["id"] not in seen]
+        figure["mentioned"] = [claim for claim in about if claim["id"] in seen]
+        seen |= {claim["id"] for claim in about}
+    return list(figures)
+
+
+def _film(path: Path, experiment: Experiment, target: Path) -> dict[str, str]:
+    for suffix in (".gif", ".png"):
+        copy(path.with_suffix(suffix), target / f"film_{path.stem}{suffix}")
+    film, link = experiment.film, f"files/{target.name}/film_{path.stem}"
+    return {
+        "case": path.stem,
+        "caption": film.caption if film and film.case == path.stem else "The arms, from the recording.",
+        "alt": f"The simulated arms, and {film.label} over time" if film else "The simulated arms",
+        "gif": f"{link}.gif",
+        "still": f"{link}.png",
+    }
+
+
+def _thumbnail(source: Path, target: Path) -> None:
+    with Image.open(source) as image:
+        picture = image.convert("RGB")
+    picture.thumbnail((THUMBNAIL, THUMBNAIL), Image.Resampling.LANCZOS)
+    picture.save(target, quality=70, method=4)
+
+
+def _size(svg: str) -> tuple[int, int]:
+    """How large a figure is shown [pixels], so that its letters have one size whether it has one column or two."""
+    found = re.search(r'<svg[^>]*? width="([\d.]+)pt" height="([\d.]+)pt"', svg[:2000])
+    return (round(SCALE * float(found[1])), round(SCALE * float(found[2]))) if found else (800, 400)

@@ -1,0 +1,90 @@
+"""Recorded series for the pages: each case as a script that a page opened from disk may load when a reader asks.
+
+A page opened from ``file://`` may load scripts but fetch no data, so a case becomes ``SERIES["..."] = "<base64>"``: its
+columns as 32-bit floats, differences of their bit patterns, bytes of one weight together, deflated. It is exact.
+"""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from dexrepro.experiment import Film
+
+LONGEST = 4000  # samples of a case; of a longer one every k-th is shown
+SHORTEST = 10
+UNITS = {  # of the channels that every arm and object of the world records
+    "time": "s", "position": "rad", "velocity": "rad/s", "torque": "N m", "tip": "m", "force": "N", "sensed_force": "N",
+    "length": "m",
+}  # fmt: skip
+ARMS = ("arm", "leader", "follower", "left", "right", "object")
+
+
+def write(place: Path, target: Path, cases: Iterable[str], film: Film | None) -> dict[str, Any] | None:
+    """Write ``target/series-<case>.js`` for every recorded case; returns what the page must know, None without any."""
+    found: dict[str, Any] = {}
+    for case in cases:
+        path = place / "series" / f"{case}.csv.gz"
+        if path.exists() and (columns := _columns(path)):
+            text, samples, stride = _packed(columns)
+            script = target / f"series-{case}.js"
+            script.write_text(f"SERIES[{_quoted(f'{target.name}/{case}')}] = {_quoted(text)};\n")
+            found[case] = {
+                "script": f"files/{target.name}/{script.name}", "csv": f"files/{target.name}/{path.name}",
+                "channels": list(columns), "samples": samples, "stride": stride,
+            }  # fmt: skip
+    if not found:
+        return None
+    names = list(dict.fromkeys(_name(column) for case in found.values() for column in case["channels"]))[1:]
+    channels = [{"name": name, "unit": unit(name, film)} for name in names]
+    return {"name": target.name, "cases": found, "channels": channels, "first": _first(names, list(found), film)}
+
+
+def unit(channel: str, film: Film | None = None) -> str:
+    """Of the world's own channels, and of the one whose film names it; else ""."""
+    body, _, quantity = channel.rpartition(".")
+    if film and channel == film.channel and film.scale == 1 and "[" in film.label:
+        return film.label.rpartition("[")[2].rstrip("]")
+    return UNITS.get(quantity, "") if body in ARMS or channel == "time" else ""
+
+
+def _first(names: list[str], cases: list[str], film: Film | None) -> dict[str, list[str]]:
+    """What is shown before the reader chooses: the channel of the film, or errors and forces, of at most four cases."""
+    wanted = [film.channel] if film and film.channel in names else []
+    telling = ("error", "force", "distance", "rcm_distance", "lyapunov", "stiffness", "reference")
+    wanted += [name for word in telling for name in names if name.rpartition(".")[2] == word and name not in wanted]
+    shown = cases[:4]
+    if film and film.case in cases and film.case not in shown:
+        shown = [film.case, *shown[:3]]
+    return {"channels": (wanted or names)[:2], "cases": shown}
+
+
+def _columns(path: Path) -> dict[str, Any]:
+    """Numeric columns by name, time first; {} for what is no series in time."""
+    frame = pd.read_csv(path).select_dtypes("number")
+    if len(frame) < SHORTEST or frame.columns[0] != "time" or not frame["time"].is_monotonic_increasing:
+        return {}
+    return {str(name): frame[name].to_numpy(np.float32) for name in frame}
+
+
+def _packed(columns: dict[str, Any]) -> tuple[str, int, int]:
+    samples = len(columns["time"])
+    stride = -(-samples // LONGEST)
+    bits = np.array([values[::stride] for values in columns.values()]).view(np.int32)
+    changes = np.diff(bits, axis=1, prepend=np.int32(0))
+    planes = changes.astype("<i4").view(np.uint8).reshape(*bits.shape, 4).transpose(0, 2, 1)
+    return base64.b64encode(zlib.compress(planes.tobytes(), 6)).decode(), bits.shape[1], stride
+
+
+def _name(column: str) -> str:
+    return column.partition("[")[0]
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("<", "\\u003c") + '"'

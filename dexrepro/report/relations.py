@@ -1,0 +1,93 @@
+"""What belongs together: errata, equations, code and commands of a claim; the laws of an experiment."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from dexrepro.claims import Claim, Erratum
+from dexrepro.config import leaves
+
+
+def errata_of(claim: Claim, errata: Iterable[Erratum], composed: Mapping[str, Any]) -> list[Erratum]:
+    """Errata that touch a claim.
+
+    Its text names them, a metric is evidence of both, or a case of the claim's printed form is evidence or sets what
+    the erratum's switch sets.
+    """
+    named = set(re.findall(r"\bE\d+\.\w+", f"{claim.statement} {claim.note}"))
+    printed = {_case(name) for name in (claim.printed.metrics if claim.printed else ())}
+    printed -= {_case(name) for name in (claim.predicate.metrics if claim.predicate else ())}
+    overrides = set[tuple[str, str]]().union(*(_overrides(composed, name) for name in printed))
+    return [
+        erratum
+        for erratum in errata
+        if erratum.id in named
+        or set(erratum.evidence) & set(claim.metrics)
+        or printed & {_case(name) for name in erratum.evidence}
+        or (erratum.switch and _settings(erratum.switch.split()) <= overrides)
+    ]
+
+
+def _overrides(composed: Mapping[str, Any], case: str) -> set[tuple[str, str]]:
+    """What a case sets, as (last part of the key, value)."""
+    experiment, _, name = case.partition(".")
+    cases = composed.get(experiment, {}).get("cases") or {}
+    return {(key.rpartition(".")[2], str(value).lower()) for key, value in leaves(cases.get(name) or {})}
+
+
+def _settings(words: Iterable[str]) -> set[tuple[str, str]]:
+    pairs = (word.partition("=") for word in words)
+    return {(key.rpartition(".")[2], value.lower()) for key, _, value in pairs}
+
+
+def _case(metric: str) -> str:
+    """ "experiment.case.metric" -> "experiment.case"; of a number over several cases the experiment alone."""
+    return ".".join(metric.split(".")[:2]) if metric.count(".") > 1 else metric
+
+
+def laws(node: Any) -> list[Any]:
+    """Classes and functions that a configuration names by ``_target_``, each once, as far as they can be imported."""
+    found: dict[str, Any] = {}
+    todo = [node]
+    while todo:
+        item = todo.pop()
+        if isinstance(item, Mapping):
+            if isinstance(item.get("_target_"), str):
+                found.setdefault(item["_target_"], None)
+            todo += item.values()
+        elif isinstance(item, Sequence) and not isinstance(item, str):
+            todo += item
+    things = {name: _imported(name) for name in sorted(found)}
+    return [thing for thing in things.values() if hasattr(thing, "__module__")]
+
+
+def _imported(dotted: str) -> Any:
+    parts = dotted.split(".")
+    for cut in range(len(parts) - 1, 0, -1):
+        try:
+            thing: Any = importlib.import_module(".".join(parts[:cut]))
+            for part in parts[cut:]:
+                thing = getattr(thing, part)
+        except (ImportError, AttributeError):
+            continue
+        return thing
+    return None
+
+
+@cache
+def definitions(folder: Path) -> dict[str, tuple[Path, int]]:
+    """Where each claim and erratum of a chapter's folder is written: id -> file, line."""
+    found: dict[str, tuple[Path, int]] = {}
+    for path in sorted(folder.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
+                name = node.args[0].value
+                if isinstance(name, str) and re.fullmatch(r"[CE]\d+\.\w+", name):
+                    found.setdefault(name, (path, node.lineno))
+    return found

@@ -1,0 +1,113 @@
+"""What the pages say of a claim: does it hold, would we have noticed if it did not, how often does it hold.
+
+Everything here works on what a result's claims.json holds. A claim evaluated before controls were recorded has none:
+it counts as not severely tested, never as tested.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from dexrepro import claims
+from dexrepro.claims import AFTER_CORRECTION, NOT_EVALUATED, REPRODUCED, ROBUST
+
+Claim = Mapping[str, Any]
+
+HOLDS = (REPRODUCED, AFTER_CORRECTION)
+VERDICTS = {**claims.VERDICTS, NOT_EVALUATED: "needs a number that this result does not have"}
+MARKS = {
+    REPRODUCED: "circle", AFTER_CORRECTION: "diamond", claims.NOT_ATTRIBUTED: "triangle",
+    claims.READING_DEPENDENT: "hexagon", claims.BY_CONSTRUCTION: "square", claims.NOT_REPRODUCED: "cross",
+    claims.NOT_TESTABLE: "dash", NOT_EVALUATED: "dash",
+}  # fmt: skip
+"""How a verdict is marked: a shape, so that its colour is not needed."""
+
+
+def is_severe(claim: Claim) -> bool:
+    """Whether the run without what the claim credits makes the statement fail."""
+    margin = claim.get("control_margin")
+    return margin is not None and not margin > 0
+
+
+def robustness(row: Mapping[str, Any] | None) -> str:
+    """ "robust", "fragile" or "open": what a study shows a claim to be; "" without one."""
+    return claims.robustness(row["holds"], row["samples"]) if row else ""
+
+
+def strength(claim: Claim) -> str:
+    """ "strong": severely tested and robust; "partial": one of the two; "weak": neither."""
+    return ("weak", "partial", "strong")[is_severe(claim) + (claim["robustness"] == ROBUST)]
+
+
+def is_headline(claim: Claim) -> bool:
+    """Whether a reader can build on it: it holds, was severely tested, and is robust."""
+    return claim["verdict"] in HOLDS and strength(claim) == "strong"
+
+
+def noticed(claim: Claim) -> str:
+    """Whether a failure would have been noticed, in a phrase."""
+    if claim.get("control_margin") is not None:
+        return "yes: the control fails" if is_severe(claim) else "no: the control holds as well"
+    if claim.get("no_control"):
+        return f"no control can exist: {claim['no_control']}"
+    return "the control was not evaluated" if claim.get("control") else "not tested: no control on record"
+
+
+def often(claim: Claim) -> str:
+    """How often it holds over what is not printed, in a phrase."""
+    row, word = claim.get("study"), claim["robustness"]
+    if not row:
+        return word or "no study"
+    return f"{word}: {row['holds']} of {row['samples']} draws" if word else f"{row['holds']} of {row['samples']} draws"
+
+
+def score(evaluated: Iterable[Claim]) -> dict[str, Any]:
+    """Counts of the book's claims by verdict, of how well they are tested, and of our own tests."""
+    evaluated = list(evaluated)
+    book = [claim for claim in evaluated if claim["source"] == "book"]
+    held = [claim for claim in book if claim["verdict"] in HOLDS]
+    own = [claim for claim in evaluated if claim["source"] != "book" and claim["verdict"] != NOT_EVALUATED]
+    return {
+        "controlled": sum(claim.get("control_margin") is not None for claim in book),
+        "total": len(book),
+        "counts": {verdict: sum(claim["verdict"] == verdict for claim in book) for verdict in VERDICTS},
+        "severe": sum(is_severe(claim) for claim in held),
+        "robust": sum(claim["robustness"] == ROBUST for claim in held),
+        "headline": sum(map(is_headline, book)),
+        "headline_corrected": sum(is_headline(claim) and claim["verdict"] == AFTER_CORRECTION for claim in book),
+        "ours": (sum(claim["verdict"] in HOLDS for claim in own), len(own)),
+    }
+
+
+def answer(evaluated: Sequence[Claim]) -> str:
+    """An experiment's result in one sentence."""
+    book = [claim for claim in evaluated if claim["source"] == "book" and claim["verdict"] != NOT_EVALUATED]
+    if not book:
+        return "The book claims nothing about this; our own tests and figures stand for themselves."
+    held = [claim for claim in book if claim["verdict"] in HOLDS]
+    missed = "; ".join(f"{claim['id']} {claim['verdict']}" for claim in book if claim not in held)
+    corrected = sum(claim["verdict"] == AFTER_CORRECTION for claim in held)
+    if len(book) == 1:
+        return f"The book's claim: {book[0]['verdict']}."
+    how_many = "None" if not held else "All" if not missed else f"{len(held)}"
+    after = (
+        "" if not corrected else ", after correction" if corrected == len(held) else f", {corrected} after correction"
+    )
+    first = f"{how_many} of the book's {len(book)} claims {'holds' if len(held) == 1 else 'hold'}{after}."
+    return f"{first} {missed}." if missed else first
+
+
+def examples(evaluated: Iterable[Claim]) -> list[Claim]:
+    """One worked example of each verdict that occurs: the best documented, then the one decided most clearly."""
+
+    def merit(claim: Claim) -> tuple[bool, bool, bool, float]:
+        documented = claim.get("control_margin") is not None
+        return documented, bool(claim.get("study")), claim["source"] == "book", min(abs(claim["margin"] or 0.0), 0.9)
+
+    found: dict[str, Claim] = {}
+    for claim in evaluated:
+        key = claim["verdict"]
+        if key not in found or merit(claim) > merit(found[key]):
+            found[key] = claim
+    return [found[verdict] for verdict in VERDICTS if verdict in found]

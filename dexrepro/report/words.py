@@ -1,0 +1,53 @@
+"""How names and values read on a page."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pandas as pd
+from markupsafe import Markup
+
+from dexrepro.report import symbols
+
+
+def breakable(name: str) -> Markup:
+    """A dotted name that may be broken between its parts, and only there."""
+    return Markup("<wbr>").join(re.split(r"(?<=[._=,/-])(?=\w)", name))
+
+
+def column_kind(column: pd.Series[Any]) -> str:
+    """How a table's column is set: "number", "words" (some cell is a phrase, so that it needs width) or ""."""
+    if column.dtype.kind in "if":
+        return "number"
+    return "words" if column.astype(str).str.len().max() > 24 else ""
+
+
+def cell(value: Any) -> str:
+    """A table's entry: a minus sign at which no line is broken, words in place of ``True`` and of a key."""
+    if pd.isna(value):
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str) and re.fullmatch(r"[a-z][a-z0-9]+(_[a-z0-9]+)+", value):
+        return value.replace("_", " ")
+    if isinstance(value, str):
+        return symbols.greek(value.replace("+-", "\u00b1"))
+    if isinstance(value, float):
+        return (f"{value:.0f}" if 1e4 <= abs(value) < 1e6 else f"{value:.4g}").replace("-", "\u2212")
+    return str(value)
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """Four digits, with a minus sign; a dash where there is none."""
+    return "–" if value is None else f"{value:.{digits}g}".replace("-", "\u2212")
+
+
+def short_number(value: float | None) -> str:
+    """Two digits: of a margin no more matter."""
+    return number(value, 2)
+
+
+def percent(value: float) -> str:
+    """A share as a whole percentage; 100 % is kept for all."""
+    return f"{100 * value:.0f} %" if value == 1 else f"{min(100 * value, 99.4):.0f} %"

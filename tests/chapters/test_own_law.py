@@ -1,0 +1,143 @@
+"""A law of the user's own joins every comparison of its kind, in every chapter and in the scene of the user's own."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dexrepro import chapters
+from dexrepro.case import generator, live
+from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.control.contract import Command, Measured, check, report
+from dexrepro.control.motion import Motion
+from dexrepro.physics.world import World
+
+
+class Told:
+    """What the law was told last, for the test to look at."""
+
+    measured: Measured[Any]
+    desired: Motion[Any]
+    calls = resets = 0
+
+
+class Joint:
+    """A weak spring to the desired joint angles, with a little damping applied implicitly."""
+
+    kind = "joint"
+
+    def reset(self, measured: Measured[Any]) -> None:
+        Told.resets += 1
+
+    def __call__(self, measured: Measured[Any], desired: Motion[Any]) -> Command:
+        Told.measured, Told.desired, Told.calls = measured, desired, Told.calls + 1
+        return Command(0.1 * (desired.position - measured.position), 0.01 * np.ones_like(measured.position))
+
+
+class EndPoint(Joint):
+    """A weak spring to the desired end point."""
+
+    kind = "end_point"
+
+    def __call__(self, measured: Measured[Any], desired: Motion[Any]) -> Command:
+        Told.measured, Told.desired, Told.calls = measured, desired, Told.calls + 1
+        return Command(force=desired.position - measured.position)
+
+
+class Holding(Joint):
+    """Stays where contact began."""
+
+    kind = "holding"
+
+    def __call__(self, measured: Measured[Any]) -> float:  # type: ignore[override]
+        Told.measured, Told.calls = measured, Told.calls + 1
+        return 0.0
+
+
+LAWS = {law.kind: law for law in (Joint, EndPoint, Holding)}
+KINDS = {"1": "holding", "2": "holding", "3": "joint", "4": "end_point", "5": "joint", "6": "joint", "7": "joint",
+         "8": "end_point"}  # fmt: skip
+COMPARISONS = [
+    (number, name)
+    for number in KINDS
+    for name, block in compose_chapter(number).items()
+    if isinstance(block, dict) and "law" in block and name != "shared"
+]
+
+
+LATCH = "latch: {threshold: -1.0, samples: 1, release: -1.0, release_samples: 1}"
+#: What a case says beside its law: one value where a list is studied, and no waiting for contact.
+BESIDE = {
+    "rigid_boxes": (LATCH,),
+    "hand_over": (LATCH,),
+    "movement_estimation": ("stiffness: 35, period: 20",),
+    "balloon_static": ("contact_force: -1.0",),
+    "balloon_movement": ("contact_force: -1.0",),
+    "grasp_through_opening": ("choice: random",),
+    "bounded_tracking": ("hand.letter: w",),
+    "obstacle_tracking": ("goal: 4",),
+    "impedance_stability": ("stiffness_gain: 10.0",),
+}
+
+
+def test_every_chapter_has_a_comparison() -> None:
+    assert {number for number, _ in COMPARISONS} == set(KINDS)
+    assert len(COMPARISONS) == 27
+
+
+@pytest.fixture
+def brief(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every run of a world ends after a few steps."""
+    run = World.run
+
+    def few(world: World, duration: float, *arguments: Any, **options: Any) -> Any:
+        period = options.get("control_period") or world.step
+        return run(world, min(duration, 6 * period), *arguments, **options)
+
+    monkeypatch.setattr(World, "run", few)
+    Told.calls = Told.resets = 0
+
+
+@pytest.mark.parametrize(("number", "name"), COMPARISONS)
+@pytest.mark.usefixtures("brief")
+def test_a_law_of_its_kind_joins_the_comparison(number: str, name: str) -> None:
+    law = LAWS[KINDS[number]]
+    case = ", ".join((f"law: {{_target_: test_own_law.{law.__name__}}}", *BESIDE.get(name, ())))
+    values = experiment_cases(compose_chapter(number, (f"+{name}.cases.mine={{{case}}}",)), name)["mine"]
+    config = live({**values, "perturbation": 0.0, "seed": 1, "case": "mine"})
+    experiment = chapters.load(number).experiment(name)
+    recording = experiment.simulation.simulate(config, lambda purpose: generator(1, name, purpose))
+    assert Told.calls > 0
+    assert Told.resets > 0
+    assert np.isfinite(np.concatenate([np.ravel(part) for part in Told.measured[:4]])).all()
+    measured = [recording[channel] for channel in recording.series if channel.startswith(("arm.", "follower."))]
+    assert all(np.isfinite(values).all() for values in measured)
+
+
+@pytest.mark.parametrize("kind", LAWS)
+@pytest.mark.usefixtures("brief")
+def test_a_law_of_each_kind_drives_the_own_scene(kind: str) -> None:
+    arm = "scene.arm={_target_: dexrepro.robots.planar.planar, lengths: [0.4, 0.3], masses: [1.0, 0.8]}"
+    leader = "scene.leader={line: {start: [0.5, 0.1, 0], end: [0.55, 0.15, 0], period: 4}}"
+    law = f"scene.law={{_target_: test_own_law.{LAWS[kind].__name__}}}"
+    given = (arm, leader, law, "scene.start=[-0.5, 1.0]", "scene.offset=[-0.1, 0, 0]")
+    (values,) = experiment_cases(compose_chapter("own", given), "scene").values()
+    config = live({**values, "perturbation": 0.0})
+    recording = chapters.load("own").experiment("scene").simulation.simulate(config, None)
+    assert Told.calls == 6
+    assert Told.resets > 0
+    assert np.ndim(Told.measured.position) == (0 if kind == "holding" else 1)
+    assert np.isfinite(recording["arm.torque"]).all()
+
+
+def test_a_law_of_another_kind_is_refused_with_one_sentence() -> None:
+    with pytest.raises(ValueError, match="law Holding is of kind 'holding'; here a law of kind 'joint' is wanted"):
+        check(Holding(), "joint")
+    with pytest.raises(ValueError, match="object is no law: its class must declare kind = 'holding'"):
+        check(object(), "holding")
+
+
+def test_a_law_that_reports_nothing_has_no_channels() -> None:
+    assert report(Joint()) == {}

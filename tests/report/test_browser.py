@@ -1,0 +1,189 @@
+"""The report in a real browser, opened from disk: what a reader does with mouse and keyboard works."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from browser import PROGRAM, Browser, axe
+
+from dexrepro.storage import load_recording
+
+pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+PAGES = ("index", "chapter90", "claims", "errata", "equations", "symbols", "verdicts")
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    browser = Browser(tmp_path_factory.mktemp("profile"))
+    yield browser
+    browser.close()
+
+
+@pytest.fixture
+def browser(program: Browser, report: Path) -> Iterator[Browser]:
+    program.problems.clear()
+    program.screen(1440, 900)
+    yield program
+    assert not program.problems
+    assert all(url.startswith(("file:", "data:", "about:", "blob:")) for url in program.loaded.values())
+
+
+@pytest.fixture
+def explorer(browser: Browser, report: Path) -> Browser:
+    browser.open(report / "chapter90.html", "#explore-decay")
+    browser.wait("document.querySelectorAll('.panel .u-over').length == 2")
+    browser.js("document.querySelector('.panel').scrollIntoView({block: 'center'})")
+    return browser
+
+
+def area(browser: Browser) -> list[float]:
+    return browser.js(
+        "(() => { const r = document.querySelector('.panel .u-over').getBoundingClientRect();"
+        " return [r.x, r.y, r.width, r.height] })()"
+    )
+
+
+def shown(browser: Browser, label: str) -> float:
+    """A value as the legend of the first panel shows it."""
+    text = browser.js(
+        "[...document.querySelectorAll('.panel .u-legend tr')].filter("
+        f"(row) => row.querySelector('.u-label').textContent == {label!r})[0].querySelector('.u-value').textContent"
+    )
+    return float(text.split()[0].replace("\u2212", "-"))
+
+
+def ends(browser: Browser) -> list[float]:
+    """Where each panel's time axis ends [s]."""
+    return browser.js("[...document.querySelectorAll('.panel')].map((node) => node.plot.scales.x.max)")
+
+
+def test_a_claim_is_one_click_from_the_front_page(browser: Browser, report: Path) -> None:
+    browser.open(report / "index.html")
+    browser.js("document.querySelector('.map a[href=\"chapter90.html#C90.02\"]').click()")
+    browser.wait("location.pathname.endsWith('chapter90.html') && document.readyState == 'complete'")
+    browser.wait("document.getElementById('C90.02').querySelector('details').open")
+    assert browser.js("document.getElementById('C90.02').getBoundingClientRect().top < innerHeight")
+
+
+def test_from_a_claim_to_its_line_and_back_to_the_command(browser: Browser, report: Path) -> None:
+    browser.open(report / "chapter90.html", "#C90.02")
+    assert "dexrepro run chapter=90 only=decay" in browser.js("document.getElementById('C90.02').textContent")
+    browser.js("[...document.querySelectorAll('#C90\\\\.02 a')].filter((a) => a.textContent == 'the claim')[0].click()")
+    browser.wait("location.pathname.includes('/source/') && document.readyState == 'complete'")
+    assert "C90.02" in browser.js("document.querySelector('code:target').textContent")
+
+
+def test_hovering_shows_the_stored_value(explorer: Browser) -> None:
+    x, y, width, height = area(explorer)
+    explorer.mouse("mouseMoved", x + 0.4 * width, y + height / 2)
+    stored = load_recording(Path("results/chapter90/decay/series"), "plain")
+    instant = shown(explorer, "t")
+    index = abs(stored.time - instant).argmin()
+    assert stored.time[index] == pytest.approx(instant, rel=1e-4)
+    assert shown(explorer, "plain") == pytest.approx(stored["x"][index], rel=1e-4)
+
+
+def test_zooming_one_panel_zooms_all(explorer: Browser) -> None:
+    before = ends(explorer)
+    x, y, width, height = area(explorer)
+    explorer.mouse("mouseMoved", x + 0.2 * width, y + height / 2)
+    explorer.mouse("mousePressed", x + 0.2 * width, y + height / 2, pressed=True)
+    explorer.mouse("mouseMoved", x + 0.5 * width, y + height / 2, pressed=True)
+    explorer.mouse("mouseReleased", x + 0.5 * width, y + height / 2)
+    explorer.wait(f"document.querySelector('.panel').plot.scales.x.max < {0.6 * before[0]}")
+    first, second = ends(explorer)
+    assert first == pytest.approx(second)
+    explorer.js("[...document.querySelectorAll('button')].filter((b) => b.textContent == 'Whole time')[0].click()")
+    explorer.wait(f"document.querySelector('.panel').plot.scales.x.max >= {0.999 * before[0]}")
+
+
+def test_the_keyboard_moves_the_cursor_and_zooms(explorer: Browser) -> None:
+    explorer.js("document.querySelector('.panel .uplot').focus()")
+    explorer.key("ArrowRight")
+    first = shown(explorer, "t")
+    explorer.key("ArrowRight")
+    assert shown(explorer, "t") > first
+    before = ends(explorer)[0]
+    explorer.key("+")
+    explorer.wait(f"document.querySelector('.panel').plot.scales.x.max < {before}")
+
+
+def test_cases_and_channels_are_switched(explorer: Browser) -> None:
+    lines = "document.querySelectorAll('.panel:first-child .u-series').length"
+    before = explorer.js(lines)
+    explorer.js("document.querySelector('.choices input[value=plain]').click()")
+    explorer.wait(f"{lines} == {before - 1}")
+    explorer.js("document.querySelector('.choices input[value=pair]').click()")
+    explorer.wait("document.querySelectorAll('.panel').length == 1")
+
+
+def test_the_search_knows_verdicts_equations_and_says_when_it_cut(browser: Browser, report: Path) -> None:
+    browser.open(report / "chapter90.html")
+    assert "search-index.js" not in str(list(browser.loaded.values())), "loaded when first needed"
+    browser.key("/")
+    assert browser.js("document.activeElement.id") == "search"
+
+    def find(words: str) -> list[str]:
+        browser.js(f"box.value = {json.dumps(words)}; search()")
+        return browser.js("[...document.querySelectorAll('#found a')].map((a) => a.getAttribute('href'))")
+
+    assert find("not reproduced") == ["chapter90.html#C90.02"]
+    assert find("nothing grows") == ["chapter90.html#C90.02"]
+    assert find("eq (90.1)")[0] == "equations.html#eq-90.1"
+    assert find("lambda_1")[0].startswith("symbols.html#")
+    browser.js("for (const entry of [...SEARCH_INDEX]) SEARCH_INDEX.push(entry, entry); 0")
+    assert len(find("e")) == 40
+    assert "the first 40 of" in browser.js("found.textContent")
+
+
+def test_the_list_of_all_claims_is_filtered(browser: Browser, report: Path) -> None:
+    browser.open(report / "claims.html")
+    browser.js("filter.elements.verdict.value = 'not reproduced'; filter.dispatchEvent(new Event('input'))")
+    rows = browser.js("[...document.querySelectorAll('.answers tbody tr:not([hidden])')].map((r) => r.textContent)")
+    assert len(rows) == 1
+    assert "C90.02" in rows[0]
+
+
+def test_a_film_plays_when_asked_to(browser: Browser, report: Path) -> None:
+    browser.open(report / "chapter90.html")
+    source = "document.querySelector('.film img').getAttribute('src')"
+    assert browser.js(source) == "files/decay/film_plain.png"
+    browser.js("document.querySelector('.film button').click()")
+    assert browser.js(source) == "files/decay/film_plain.gif"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_pictures_load_and_a_phone_needs_no_sideways_scrolling(browser: Browser, report: Path, page: str) -> None:
+    browser.screen(390, 844)
+    browser.open(report / f"{page}.html")
+    assert browser.js("document.documentElement.scrollWidth") <= 390
+    browser.js("document.querySelectorAll('img').forEach((image) => image.loading = 'eager')")
+    browser.wait("[...document.images].filter((i) => i.getAttribute('src')).every((i) => i.complete && i.naturalWidth)")
+
+
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("page", PAGES)
+def test_no_barrier_for_assistive_technology(
+    browser: Browser, report: Path, request: pytest.FixtureRequest, page: str, dark: bool
+) -> None:
+    source = axe(request.config.cache.mkdir("axe"))
+    if source is None:
+        pytest.skip("axe-core cannot be fetched")
+    browser.screen(1440, 900, dark)
+    browser.open(report / f"{page}.html")
+    browser.js("document.querySelectorAll('details').forEach((node) => node.open = true)")
+    browser.js(source + "; 0")
+    found = browser.js(
+        "axe.run({preload: false}).then((r) => r.violations.map((v) => [v.id, v.nodes[0].html.slice(0, 200)]))"
+    )
+    assert not found
+
+
+def test_the_front_page_is_light(browser: Browser, report: Path) -> None:
+    browser.open(report / "index.html")
+    paths = {url.removeprefix("file://") for url in browser.loaded.values() if url.startswith("file:")}
+    assert sum(Path(path).stat().st_size for path in paths) < 500_000
+    assert all(path.stat().st_size <= 15_000 for path in report.rglob("*.webp"))

@@ -1,0 +1,55 @@
+"""Recorded series as scripts: exact, thinned only where they are long, and with units only where these are known."""
+
+from __future__ import annotations
+
+import base64
+import re
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dexrepro.experiment import Film, Recording
+from dexrepro.report import explorer
+from dexrepro.storage import save_recording
+
+
+def unpacked(script: str, columns: int) -> np.ndarray:
+    """The inverse, as the page's script does it."""
+    data = base64.b64decode(re.search(r'= "(.*)";', script)[1])
+    planes = np.frombuffer(zlib.decompress(data), np.uint8).reshape(columns, 4, -1)
+    changes = np.ascontiguousarray(planes.transpose(0, 2, 1)).view("<i4")[..., 0]
+    return np.cumsum(changes, axis=1, dtype=np.int32).view(np.float32)
+
+
+@pytest.mark.parametrize(("samples", "stride"), [(50, 1), (9000, 3)])
+def test_a_script_holds_the_stored_samples(tmp_path: Path, samples: int, stride: int) -> None:
+    rng = np.random.default_rng(0)
+    series = {
+        "time": np.arange(samples) * 0.01,
+        "error": rng.standard_normal((samples, 2)),
+        "x": np.full(samples, np.nan),
+    }
+    save_recording(Recording(series), tmp_path / "series", "plain", 100.0)
+    (tmp_path / "files").mkdir()
+    found = explorer.write(tmp_path, tmp_path / "files", ["plain", "absent"], None)
+    case = found["cases"]["plain"]
+    assert case["channels"] == ["time", "error[0]", "error[1]", "x"]
+    assert case["stride"] == stride
+    values = unpacked((tmp_path / "files/series-plain.js").read_text(), 4)
+    np.testing.assert_allclose(values[1:3], series["error"][::stride].T, rtol=1e-6)
+    assert np.isnan(values[3]).all()
+
+
+def test_what_is_no_series_in_time_is_left_out(tmp_path: Path) -> None:
+    save_recording(Recording({"time": np.arange(3.0), "x": np.zeros(3)}), tmp_path / "series", "plain", 100.0)
+    assert explorer.write(tmp_path, tmp_path, ["plain"], None) is None
+
+
+def test_units_are_those_of_the_world_or_of_the_film() -> None:
+    film = Film("plain", "", None, "object.force", "Holding force [N]")
+    assert explorer.unit("leader.position") == "rad"
+    assert explorer.unit("error") == ""
+    assert explorer.unit("error", Film("plain", "", None, "error", "Error [mm]", scale=1e3)) == "", "scaled in the film"
+    assert explorer.unit("object.force", film) == "N"

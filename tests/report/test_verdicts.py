@@ -1,0 +1,95 @@
+"""What the pages say of a claim, from what its evaluation holds."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from dexrepro import chapters
+from dexrepro.claims import Claim, Erratum, less
+from dexrepro.config import compose_chapter
+from dexrepro.report import relations, verdicts
+
+
+def claim(**values: Any) -> dict[str, Any]:
+    fields = {
+        "id": "C1.01",
+        "source": "book",
+        "verdict": "reproduced",
+        "margin": 0.5,
+        "by_construction": "",
+        "robustness": "",
+    }
+    return {**fields, "study": None, **values}
+
+
+SEVERE = {"control": "b < a", "control_margin": -0.5}
+
+
+@pytest.mark.parametrize(
+    ("values", "strength", "headline"),
+    [
+        ({}, "weak", False),
+        (SEVERE, "partial", False),
+        ({"robustness": "robust"}, "partial", False),
+        ({**SEVERE, "robustness": "robust"}, "strong", True),
+        ({**SEVERE, "robustness": "robust", "verdict": "after correction"}, "strong", True),
+        ({**SEVERE, "robustness": "robust", "verdict": "not reproduced"}, "strong", False),
+        ({**SEVERE, "robustness": "robust", "verdict": "by construction"}, "strong", False),
+        ({"control": "b < a", "control_margin": 0.2, "robustness": "robust"}, "partial", False),
+        ({"control": "b < a", "control_margin": None, "robustness": "robust"}, "partial", False),
+    ],
+)
+def test_only_what_holds_was_tested_and_is_robust_makes_the_headline(values, strength, headline) -> None:
+    assert verdicts.strength(claim(**values)) == strength
+    assert verdicts.is_headline(claim(**values)) is headline
+
+
+def test_each_verdict_counts_apart_and_ours_beside_them() -> None:
+    score = verdicts.score([claim(verdict="by construction"), claim(robustness="robust"), claim(source="ours")])
+    assert (score["counts"]["by construction"], score["counts"]["reproduced"]) == (1, 1)
+    assert (score["total"], score["robust"], score["ours"]) == (2, 1, (1, 1))
+
+
+def test_a_control_that_holds_is_said_to_hold() -> None:
+    assert verdicts.noticed(claim(**SEVERE)) == "yes: the control fails"
+    assert verdicts.noticed(claim(control="b < a", control_margin=0.1)).startswith("no")
+    assert "identity" in verdicts.noticed(claim(no_control="an identity"))
+
+
+def test_the_answer_names_what_fails() -> None:
+    claims = [claim(), claim(id="C1.02", verdict="not attributed"), claim(id="C1.03", source="ours")]
+    assert verdicts.answer(claims) == "1 of the book's 2 claims holds. C1.02 not attributed."
+    assert verdicts.answer(claims[:1] * 2) == "All of the book's 2 claims hold."
+
+
+def test_each_verdict_has_the_best_documented_example() -> None:
+    chosen = verdicts.examples(
+        [claim(margin=0.9), claim(id="C1.02", **SEVERE), claim(id="C1.03", verdict="not reproduced")]
+    )
+    assert [item["id"] for item in chosen] == ["C1.02", "C1.03"]
+
+
+def test_an_erratum_touches_a_claim_by_name_by_evidence_or_by_the_case_it_switches() -> None:
+    statement = Claim("C1.01", "1.1", "It holds (E1.01).", less("e.a.x", 1), printed=less("e.printed.x", 1))
+    errata = [
+        Erratum("E1.01", "", "slip", ""),
+        Erratum("E1.02", "", "slip", "", evidence=("e.printed.y",)),
+        Erratum("E1.03", "", "slip", "", switch="e.law.sign=printed"),
+        Erratum("E1.04", "", "slip", "", evidence=("e.a.y",)),
+        Erratum("E1.05", "", "slip", "", switch="e.law.sign=other"),
+    ]
+    composed = {"e": {"cases": {"printed": {"law": {"sign": "printed"}}}}}
+    assert [item.id for item in relations.errata_of(statement, errata, composed)] == ["E1.01", "E1.02", "E1.03"]
+
+
+def test_nearly_every_claim_that_holds_after_a_correction_names_the_erratum() -> None:
+    touched = [
+        bool(relations.errata_of(item, loaded.errata, compose_chapter(number)))
+        for number in chapters.numbers()
+        for loaded in [chapters.load(number)]
+        for item in loaded.claims
+        if item.printed
+    ]
+    assert sum(touched) >= 0.9 * len(touched)
