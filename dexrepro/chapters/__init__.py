@@ -1,8 +1,8 @@
 """What experiments there are: the chapters of the book and those a user adds, all found by their folders.
 
-A chapter is a folder of experiments with, where it has them, ``TITLE``, ``ORDER`` and ``FAIRNESS`` in its ``__init__.py``,
-``errata.py`` and ``claims.py`` (claims that no experiment can test); an experiment is a folder that holds
-``experiment.py``, see :class:`dexrepro.experiment.Experiment`. Folders outside the package are named by
+A chapter is a folder of experiments with, where it has them, ``TITLE``, ``ORDER`` and ``FAIRNESS`` in its
+``__init__.py``, ``errata.py`` and ``claims.py`` (claims that no experiment can test); an experiment is a folder that
+holds ``experiment.py``, see :class:`dexrepro.experiment.Experiment`. Folders outside the package are named by
 ``--experiments`` or the environment variable ``DEXREPRO_EXPERIMENTS``. Such a folder holds chapters, or is itself one;
 it adds to the book, or, with a ``book.yaml`` (title, authors) in it, takes its place.
 """

@@ -63,7 +63,7 @@ CLAIMS = (
         },
         where="5.5.3",
         note="The path changes less at every step in {obstacle_crossing.default.skill2.shrinks_always:.0%} of the "
-        "draws with two blocks and {obstacle_crossing.default.skill3.shrinks_always:.0%} with three; the book shows one.",
+        "draws with two blocks and {obstacle_crossing.default.skill3.shrinks_always:.0%} with three.",
     ),
     Claim(
         "C5.23",
