@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
+from dexrepro.config import one_of
 from dexrepro.experiment import Config
 from dexrepro.primitives.barrier import Constraint, Gains
 from dexrepro.primitives.constrained import LAWS, Law, Path, Reference, Skill, rollout, safety_filter
@@ -66,7 +67,8 @@ def stack(references: list[Reference]) -> Reference:
 
 def law(cdmp: Config) -> Law:
     """The law that a configuration names; the filter with its rates."""
-    return safety_filter(tuple(cdmp.filter_rates)) if cdmp.law == "filter" else LAWS[cdmp.law]
+    name = one_of("cdmp.law", cdmp.law, LAWS)
+    return safety_filter(tuple(cdmp.filter_rates)) if name == "filter" else LAWS[name]
 
 
 def gains(cdmp: Config) -> Gains:
@@ -79,13 +81,24 @@ def tube(cdmp: Config, margin: float | Array) -> Constraint:
     ``bound_scaling`` "scaled": H = k_z h, "printed": H = h (E6.01); ``weight`` of the barrier: "one" (printed), "h2"
     (H^2) or "off".
     """
-    bound = np.asarray(margin) * (cdmp.kz if cdmp.bound_scaling == "scaled" else 1.0)
-    weight = {"one": 1.0, "h2": bound**2, "off": 0.0}[cdmp.weight]
-    return Constraint(True, bound, weight=weight)
+    bound = np.asarray(margin) * (cdmp.kz if scaled(cdmp) else 1.0)
+    return Constraint(True, bound, weight=weight(cdmp, bound))
 
 
-def constrained(s: Skill, reference: Reference, cdmp: Config, dt: float | Array, velocity: Array) -> Path:
-    """The constrained movement from the reference's start with a scaled initial velocity tau dx/dt."""
+def scaled(cdmp: Config) -> bool:
+    """Whether the bounds are those of x^c - x, H = k_z h."""
+    return bool(one_of("cdmp.bound_scaling", cdmp.bound_scaling, ("scaled", "printed")) == "scaled")
+
+
+def weight(cdmp: Config, bound: Any) -> Any:
+    """Factor of the barrier for a bound H."""
+    return {"one": 1.0, "h2": bound**2, "off": 0.0}[one_of("cdmp.weight", cdmp.weight, ("one", "h2", "off"))]
+
+
+def constrained(
+    s: Skill, reference: Reference, cdmp: Config, dt: float | Array, velocity: Array, offset: float | Array = 0.0
+) -> Path:
+    """The constrained movement from ``offset`` [cm] off the reference's start, at a scaled velocity tau dx/dt."""
     projection = cdmp.projection_rate if cdmp.projection else None
-    constraint = tube(cdmp, cdmp.margin)
-    return rollout(s, reference, constraint, gains(cdmp), law(cdmp), dt, reference.position[0], velocity, projection)
+    start = reference.position[0] + offset
+    return rollout(s, reference, tube(cdmp, cdmp.margin), gains(cdmp), law(cdmp), dt, start, velocity, projection)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dexrepro.chapters.chapter6 import learning
+from dexrepro.config import one_of
 from dexrepro.experiment import Config
 from dexrepro.humans.segmentation import change_point, slowest_point
 from dexrepro.humans.waypoints import Drawing, average, draw
@@ -57,7 +58,8 @@ def _lesson(config: Config, rng: np.random.Generator) -> Lesson:
         paces = d.duration * (1 + 0.08 * rng.normal(size=2))
         drawings.append(draw(strokes, paces, rng, d.spread, d.tremor))
     drawings = [replace(w, position=w.position * (1 + config.perturbation)) for w in drawings]
-    cuts = [CUTS[config.segmentation](drawing.time, drawing.position) for drawing in drawings]
+    cut = CUTS[one_of("segmentation", config.segmentation, CUTS)]
+    cuts = [cut(drawing.time, drawing.position) for drawing in drawings]
     halves = []
     for keep in (np.less_equal, np.greater_equal):
         pieces = [(w.time[keep(w.time, cut)], w.position[keep(w.time, cut)]) for w, cut in zip(drawings, cuts)]
@@ -92,7 +94,7 @@ def extended_paths(config: Config, lesson: Lesson, steps: int) -> list[Array]:
     """
     around = preferred_arc(config)
     first, second = lesson.first, lesson.second
-    if config.reference.intervals == "subskill":
+    if one_of("reference.intervals", config.reference.intervals, ("subskill", "local")) == "subskill":
         one = first.rollout(lesson.durations[0] / steps, horizon=lesson.durations[0], goal=around[0])
         two = second.rollout(lesson.durations[1] / steps, horizon=lesson.durations[1], start=around[-1])
         return [one.position, two.position]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import arms, learning
+from dexrepro.config import one_of
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans import waypoints
 from dexrepro.physics.model import RigidBodyModel
@@ -94,7 +95,7 @@ def _reference(config: Config, movement: Trajectory) -> Reference:
     leave, resume = int(near[0]), int(near[-1])
     start, end = (np.arctan2(*(path[i] - centre)[::-1]) for i in (leave, resume))
     trim = np.radians(config.trim)
-    if config.detour_side == "near":
+    if one_of("detour_side", config.detour_side, ("far", "near")) == "near":
         around = arc(centre, radius, start - trim, end - 2 * np.pi + trim)
     else:
         around = arc(centre, radius, start + trim, end - trim)

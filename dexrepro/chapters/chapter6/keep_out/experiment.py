@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning
+from dexrepro.config import one_of
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.primitives.barrier import Constraint
@@ -28,13 +29,13 @@ def simulate(config: Config, rng: Rng) -> Recording:
     skill = learning.skill([primitive] * runs, [movement] * runs)
     start = np.broadcast_to(primitive.start, (runs, 2)), np.zeros((runs, 2))
     c = config.cdmp
-    if config.route == "detour":
+    if one_of("route", config.route, ("outside", "detour")) == "detour":
         reference = _detour(config, movement, centre)
         constraint = learning.tube(c, c.margin)
     else:
         reference = centre
         bound = c.kz * config.radius
-        constraint = Constraint(False, bound, weight={"one": 1.0, "h2": bound**2}[c.weight])
+        constraint = Constraint(False, bound, weight=learning.weight(c, bound))
     path = rollout(skill, reference, constraint, learning.gains(c), learning.law(c), config.step, *start)
     distance = np.linalg.norm(path.position - centre.position, axis=-1)
     rows = [_row(path, distance[:, i], primitive.goal, i) for i in range(runs)]

@@ -12,6 +12,7 @@ from scipy.signal import savgol_filter
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter6 import learning, plane
+from dexrepro.config import one_of
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.primitives.constrained import LAWS, Reference, Skill, rollout
@@ -26,6 +27,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     old, block = plane.obstacles(config)
     lesson = plane.teach(config, rng("demonstrations"))[0]
     movement = lesson.second.rollout(lesson.durations[1] / config.steps, horizon=lesson.durations[1])
+    one_of("method", config.method, ("centroid", "closest", "boundary", "potential", "filter", "constrained"))
     if config.method in ("constrained", "filter"):
         frames = _constrained(config, lesson, movement, rng("reference_noise"))
     else:
