@@ -47,8 +47,9 @@ CLAIMS = (
         where="6.4.1, (6.23)",
         note="With tau = the segment's duration the largest distance is {planar_constraint.feedforward.e_max:.4f} cm "
         "with the barrier and {planar_constraint.no_barrier.e_max:.4f} cm without: the tracking gains do the work. "
-        "With tau = 1 s they alone leave the tube ({planar_constraint.tau1_no_barrier.e_max:.2f} cm), and so do both "
-        "laws with the barrier as weighted in (6.9).",
+        "With tau = 1 s they alone leave the tube ({planar_constraint.tau1_no_barrier.e_max:.2f} cm), and the "
+        "barrier as weighted in (6.9) is left by {planar_constraint.tau1_feedforward.violated_groups:.0f} groups of "
+        "six.",
     ),
     Claim(
         "C6.07",
@@ -159,7 +160,7 @@ CLAIMS = (
         where="(6.9)",
         note="The path rides the barrier, at {planar_constraint.tau1_feedforward_h2.e_share:.4f} of the tube; the "
         "literal law (6.15) with that weight leaves it at steps of 1 ms in "
-        "{planar_constraint.tau1_printed_h2.violated_groups} of 6 groups, which is a matter of sampling.",
+        "{planar_constraint.tau1_printed_h2.violated_groups:.0f} groups of six, which is a matter of sampling.",
     ),
     Claim(
         "C6.39",
