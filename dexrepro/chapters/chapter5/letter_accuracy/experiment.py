@@ -154,7 +154,7 @@ def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     default, result = metrics.get("default", {}), {}
     for count in config.kernels.counts:
         medians = [default.get(f"n{count}.idmp{m}.mse") for m in config.features.counts]
-        if all(value is not None for value in medians):
+        if len(medians) > 1 and all(value is not None for value in medians):
             steps = [after / before for before, after in pairwise(medians)]  # type: ignore[operator]
             result[f"largest_step_n{count}"] = max(steps)
     return result
