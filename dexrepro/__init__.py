@@ -30,11 +30,12 @@ def run(chapter: int | str, overrides: list[str] | None = None, **settings: Any)
     """
     from dexrepro.plan import plan_chapter
     from dexrepro.runner import run_plans
+    from dexrepro.selection import quoted
     from dexrepro.storage import Result
 
     workers, force = settings.pop("workers", None), settings.pop("force", False)
     given = [f"{key}={_text(value)}" for key, value in settings.items()]
-    plans, _ = plan_chapter(str(chapter), [*given, *(overrides or [])])
+    plans, _ = plan_chapter(str(chapter), [*given, *map(quoted, overrides or [])])
     outcome = run_plans(plans, workers=workers, force=force)
     if outcome.failures:
         raise RuntimeError("; ".join(f"{name} failed: {text}" for name, text in outcome.failures.items()))
@@ -51,4 +52,6 @@ def load(folder: str | Path) -> Result:
 def _text(value: Any) -> str:
     if isinstance(value, list | tuple):
         return "[" + ",".join(map(_text, value)) + "]"
-    return f"'{value}'" if isinstance(value, str | Path) else str(value)
+    from dexrepro.config import in_quotes
+
+    return in_quotes(str(value)) if isinstance(value, str | Path) else str(value)

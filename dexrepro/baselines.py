@@ -14,10 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters
-from dexrepro.config import InputError
+from dexrepro.config import InputError, in_quotes
 from dexrepro.plan import outdated, plan_chapter, select
-from dexrepro.recordings import read_frame
-from dexrepro.report.damage import check_result
+from dexrepro.report.damage import check_result, read_table
 from dexrepro.runner import run_plans
 from dexrepro.storage import read_json, write_json
 
@@ -72,6 +71,11 @@ class Baseline:
         except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
             raise InputError(f"{path} is no baseline ({' '.join(str(error).split())})") from error
         return found
+
+
+def stored(chapter: str) -> dict[str, Baseline]:
+    """The baseline of every experiment of a chapter, by its name."""
+    return {item.name: Baseline.of(chapter, item.name) for item in chapters.load(chapter).experiments}
 
 
 def _check_entry(name: str, entry: Mapping[str, Any]) -> None:
@@ -167,6 +171,29 @@ def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> Chap
     return report
 
 
+def check_cases(chapter: str, results: Path, only: Sequence[str], case: str) -> ChapterReport:
+    """The same for the metrics of the cases that a word ``case=...`` chooses, from a run of them or else of all."""
+    words = [f"results={in_quotes(str(results))}", case, *([f"only=[{','.join(only)}]"] if only else [])]
+    plans, _ = plan_chapter(chapter, words, write=False)
+    report = ChapterReport(chapter)
+    for plan in plans:
+        places = plan.folder, results / f"chapter{chapter}" / plan.experiment
+        folder = next((place for place in places if (place / "run.json").exists()), None)
+        if folder is None:
+            raise ResultsMissing(
+                f"no results of {plan.experiment}; run: dexrepro run chapter={chapter} only={plan.experiment} {case}"
+            )
+        check_result(folder, "metrics.json")
+        run = read_json(folder / "run.json")
+        if reason := outdated(plan, run | {"contents": {c: run["contents"].get(c) for c in plan.contents}}):
+            report.outdated.append(f"{plan.experiment}: {reason}")
+        begins = tuple(f"{plan.experiment}.{job.case}." for job in plan.jobs)
+        made, stored = read_json(folder / "metrics.json"), Baseline.of(chapter, plan.experiment).metrics
+        chosen = ({name: item for name, item in all_.items() if name.startswith(begins)} for all_ in (made, stored))
+        _compare(report, plan.experiment, *chosen)
+    return report
+
+
 def _compare(
     report: ChapterReport, experiment: str, metrics: Mapping[str, Any], stored: Mapping[str, Mapping[str, Any]]
 ) -> None:
@@ -194,9 +221,9 @@ def _compare_claims(
 
 def _compare_tables(report: ChapterReport, folder: Path, stored: Baseline) -> None:
     """Tables guard what is done to numbers on the way to a reader (a unit, a column); drift is for the metrics."""
+    made = tables_of(folder)
     if stored.tables is None:
         return
-    made = tables_of(folder)
     for name in dict.fromkeys([*made, *stored.tables]):
         report.tables += 1
         if name not in made or name not in stored.tables:
@@ -228,16 +255,11 @@ def _same_cell(value: Any, stored: Any, size: float, metrics: Mapping[str, Mappi
 
 def tables_of(folder: Path) -> dict[str, dict[str, list[Any]]]:
     """The tables of a result by id, each as its columns. Raises InputError where one cannot be read."""
-    found = {}
-    for path in sorted(folder.glob("*.csv")):
-        try:
-            frame = read_frame(path)
-        except (OSError, ValueError) as error:
-            raise InputError(f"{path} cannot be used ({' '.join(str(error).split())}); run: dexrepro draw") from error
-        found[path.stem] = {
-            str(name): [None if cell != cell else cell for cell in frame[name].tolist()] for name in frame
-        }
-    return found
+    tables = {path.stem: read_table(path) for path in sorted(folder.glob("*.csv"))}
+    return {
+        name: {str(column): [None if cell != cell else cell for cell in frame[column].tolist()] for column in frame}
+        for name, frame in tables.items()
+    }
 
 
 def agrees(value: float | None, entry: Mapping[str, Any]) -> bool:

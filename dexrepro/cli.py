@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--help", "-h", "--info", "-i", "--hydra-help", "--resolve")
 SHOWN = 6  # names in one line of the check
+CASES = ("case", "cases")
 STUDY = ("claim", "samples", "hours")  # what only a study knows
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
 
@@ -154,14 +155,30 @@ def _completions(**context: Any) -> list[str]:
 
 def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
-    from dexrepro.selection import checked_chapter, quoted
+    from dexrepro.selection import for_hydra, quoted
 
     arguments = [quoted(argument) for argument in arguments]
     extra_dir, overrides = _config_dir_option(arguments)
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
         given = [text for text in overrides if not text.startswith("-") and "=" in text]
-        return _launch([*arguments, *checked_chapter(given, extra_dir)], _run_job)
+        if arguments[-2:] in (["--cfg", "job"], ["-c", "job"]) and not {"-m", "--multirun"} & set(arguments):
+            return _print_config(given, extra_dir)
+        return _launch(for_hydra(arguments, given, extra_dir), _run_job)
     return run_overrides(overrides, extra_dir)
+
+
+def _print_config(overrides: Sequence[str], extra_dir: str | None) -> int:
+    """Every parameter of the chapters selected, as the experiments see them."""
+    import yaml
+
+    from dexrepro.config import compose_chapter
+    from dexrepro.selection import chapters_of, of_chapter
+
+    numbers, rest = chapters_of(overrides, extra_dir)
+    for number in numbers:
+        composed = compose_chapter(number, of_chapter(number, numbers, rest), extra_dir)
+        print(yaml.safe_dump({key: value for key, value in composed.items() if key != "hydra"}, sort_keys=False))
+    return OK
 
 
 def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
@@ -170,10 +187,10 @@ def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
         if argument in ("--config-dir", "-cd"):
             if index + 1 == len(arguments):
                 raise InputError("--config-dir needs a folder")
-            extra_dir = arguments[index + 1]
+            extra_dir = os.path.expanduser(arguments[index + 1])
             del rest[index : index + 2]
         elif argument.startswith("--config-dir="):
-            extra_dir = argument.partition("=")[2]
+            extra_dir = os.path.expanduser(argument.partition("=")[2])
             rest.remove(argument)
     if extra_dir is not None:
         _make_importable(extra_dir)
@@ -316,16 +333,20 @@ def list_command(options: argparse.Namespace) -> int:
 def check_command(options: argparse.Namespace) -> int:
     """Exit status 0: same; 1: drift; 2: results missing."""
     from dexrepro import baselines
-    from dexrepro.selection import existing, selected
+    from dexrepro.selection import existing, quoted, selected
 
-    numbers, only, results, workers, _ = selected(options.selection)
+    numbers, only, results, workers, extra = selected(options.selection, CASES)
+    case = next((quoted(f"case={value}") for value in extra.values()), None)
     if options.update:
         for number in numbers:
             for line in baselines.update_chapter(number, results, only, accept=options.accept, workers=workers):
                 out.print(line, markup=False)
         return OK
     try:
-        reports = [baselines.check_chapter(number, existing(results), only) for number in numbers]
+        if case:
+            reports = [baselines.check_cases(number, existing(results), only, case) for number in numbers]
+        else:
+            reports = [baselines.check_chapter(number, existing(results), only) for number in numbers]
     except baselines.ResultsMissing as missing:
         err.print(str(missing), markup=False)
         return WRONG
@@ -363,14 +384,20 @@ def _print_check(report: ChapterReport) -> None:
 
 def draw_command(options: argparse.Namespace) -> int:
     """Draw figures and tables again from what is on disk."""
-    from dexrepro.plan import select
+    from dexrepro.plan import plan_chapter, select
     from dexrepro.pool import sentence
     from dexrepro.report.damage import check_result
     from dexrepro.runner import redraw
-    from dexrepro.selection import existing, selected
+    from dexrepro.selection import existing, quoted, selected
 
-    numbers, only, results, _, _ = selected(options.selection)
+    numbers, only, results, _, extra = selected(options.selection, CASES)
     found = [(n, e, existing(results) / f"chapter{n}" / e.name) for n in numbers for e in select(n, only or None, None)]
+    if extra:
+        words = [quoted(f"results={results}"), *(quoted(f"case={value}") for value in extra.values())]
+        words += [f"only=[{','.join(only)}]"] if only else []
+        plans = [plan for number in numbers for plan in plan_chapter(number, words, write=False)[0]]
+        folders = {plan.experiment: plan.folder for plan in plans}
+        found = [(n, e, folders[e.name]) for n, e, _ in found if e.name in folders]
     found = [item for item in found if (item[2] / "run.json").exists()]
     if not found:
         raise InputError(f"there is no such result in {results}; run first: dexrepro run {' '.join(options.selection)}")

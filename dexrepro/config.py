@@ -5,6 +5,7 @@ Provenance: each leaf of conf/chapter/N/EXPERIMENT.yaml says on its line where i
     stiffness: 45   # k_o [N/m] | printed 2.4.1.1
     rest_length: 0.55   # m | chosen: equals the printed initial estimate | 0.5..0.65
     rate: 30   # 1/s | derived: sqrt of stiffness over mass
+    motion: ramp   # - | printed 1.5.1 | one of ramp, sine
 
 The book's symbol, where it has one, stands before the unit, which is then in brackets.
 """
@@ -17,8 +18,8 @@ import math
 import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -27,24 +28,18 @@ from hydra import compose, initialize_config_dir
 from hydra.core.config_store import ConfigStore
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from dexrepro import chapters
 
-SETTINGS = ("only", "figure", "seed", "results", "workers", "case_timeout", "force", "quiet", "gui")
+SETTINGS = ("only", "case", "figure", "seed", "results", "workers", "case_timeout", "force", "quiet", "gui")
 
 
 class InputError(Exception):
     """Something the user wrote cannot be used; the message is one sentence that says what would be right."""
-
-
-def one_of(key: str, value: Any, allowed: Iterable[Any]) -> Any:
-    """``value`` of a configuration key where it is one of the words allowed. Raises InputError otherwise."""
-    if value not in (words := list(allowed)):
-        raise InputError(f"{key} = {value} is not allowed: it must be {' or '.join(map(str, words))}")
-    return value
 
 
 def config_dir() -> Path:
@@ -84,6 +79,7 @@ def nearest(name: str, valid: Iterable[str]) -> str:
 class Provenance:
     """Where a parameter comes from: unit, kind (printed, chosen or derived), text, and the range worth varying.
 
+    words: those that a parameter which is a word may take ("| one of ramp, sine"; "| any" leaves it free).
     symbol: the book's, in plain letters: ``lambda_1``, ``khat_o(0)``, ``rho_{1,0}``; None where it has none.
     """
 
@@ -93,13 +89,14 @@ class Provenance:
     low: float | None = None
     high: float | None = None
     symbol: str | None = None
+    words: tuple[str, ...] = ()
 
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _COMMENT = re.compile(
     r"^(?:(?P<symbol>[^|\[]+?)\s*\[)?(?P<unit>[^|\]]*?)\]?\s*"
     r"\|\s*(?P<kind>printed|chosen|derived)\b:?\s*(?P<text>[^|]*?)\s*"
-    rf"(?:\|\s*(?P<low>{_NUMBER})\s*\.\.\s*(?P<high>{_NUMBER})\s*)?$"
+    rf"(?:\|\s*(?:(?P<low>{_NUMBER})\s*\.\.\s*(?P<high>{_NUMBER})|one of (?P<words>[\w, ]+)|any)\s*)?$"
 )
 _LINE = re.compile(r"^(?P<indent> *)(?P<key>[\w.\-]+|'[^']+'|\"[^\"]+\"):(?:\s+(?P<rest>.*))?$")
 
@@ -117,6 +114,7 @@ def parse_provenance(comment: str) -> Provenance | None:
         float(low) if low else None,
         float(high) if high else None,
         match["symbol"],
+        tuple(word.strip() for word in (match["words"] or "").split(",") if word.strip()),
     )
 
 
@@ -157,6 +155,46 @@ def commented_leaves(chapter: str) -> Iterator[tuple[str, str, str]]:
             yield f"{name}.{key}", value, comment
 
 
+def origin_of(
+    key: str, composed: Mapping[str, Any], origins: Mapping[str, Provenance]
+) -> tuple[Provenance | None, str | None]:
+    """A parameter's own comment, completed by that of the parameter or block it refers to; and the symbol's home."""
+    parts = key.split(".")
+    nearest = next((".".join(parts[:n]) for n in range(len(parts), 1, -1) if ".".join(parts[:n]) in origins), None)
+    own = origins[nearest] if nearest else None
+    if own and own.symbol:
+        return own, nearest
+    node: Any = composed
+    for depth, part in enumerate(parts, 1):
+        node = node.get(part) if isinstance(node, Mapping) else None
+        if isinstance(node, str) and node.startswith("${") and node.endswith("}"):
+            further, home = origin_of(".".join([node[2:-1], *parts[depth:]]), composed, origins)
+            if own and further:
+                return replace(own, symbol=further.symbol, words=own.words or further.words), home
+            return own or further, home
+    return own, None
+
+
+@cache
+def words_of(chapter: str, experiment: str) -> dict[str, tuple[str, ...]]:
+    """Words that the parameters of an experiment may take, by key within the experiment, where they are declared."""
+    composed, origins = compose_chapter(chapter), provenance(chapter)
+    found = {}
+    for key, value in leaves(resolved_block(composed, experiment)):
+        if isinstance(value, str):
+            origin, _ = origin_of(f"{experiment}.{key}", composed, origins)
+            if origin and origin.words:
+                found[key] = origin.words
+    return found
+
+
+def check_words(config: Mapping[str, Any], words: Mapping[str, tuple[str, ...]], where: str) -> None:
+    """Refuse a word that no branch of the code knows, naming those there are."""
+    for key, value in leaves(config):
+        if isinstance(value, str) and value not in words.get(key, (value,)):
+            raise InputError(f"{where}.{key} = {value} is not allowed: it must be one of {', '.join(words[key])}")
+
+
 # ------------------------------------------------------------------------------------------------------- composing
 
 
@@ -169,16 +207,18 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         raise InputError(
             f"'{own[0]}' needs --config-dir FOLDER, the folder that holds {own[0][1:].replace('=', '/')}.yaml"
         )
-    _offer(chapter)
-    shipped = _shipped(str(config_dir()), chapter, _changed(chapter))
-    search = [f"hydra.searchpath=['file://{Path(extra_dir).resolve()}']"] if extra_dir else []
+    raw = as_written(chapter)
+    shipped = inherited(raw)
+    search = [f"hydra.searchpath=[{in_quotes(f'file://{Path(extra_dir).resolve()}')}]"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
     try:
-        check_overrides(overrides, _compose([f"chapter='{chapter}'", *added, *search]) if added else shipped)
+        if added:
+            raw = _compose([f"chapter='{chapter}'", *added, *search])
+        check_overrides(overrides, inherited(raw))
         if not overrides and not extra_dir:
-            return copy.deepcopy(shipped)
-        composed = _compose([f"chapter='{chapter}'", *overrides, *search])
-    except (HydraException, OmegaConfBaseException, ValueError, TypeError) as error:
+            return shipped
+        composed = inherited(_compose([f"chapter='{chapter}'", *forced(overrides, raw), *search]))
+    except (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, TypeError) as error:
         raise InputError(" ".join(str(error.__cause__ or error).split())) from error
     if unknown := [key for key in composed if key not in shipped]:
         if not extra_dir:
@@ -191,22 +231,90 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
     return composed
 
 
+INHERITS = "inherits"
+
+
+def inherited(composed: Mapping[str, Any]) -> dict[str, Any]:
+    """The same with every block that says ``inherits: shared.law`` filled in.
+
+    What the block named has and the inheriting block lacks is referred to leaf by leaf (``gain: ${shared.law.gain}``;
+    ``_target_`` is copied), so that an override of either key works. Several blocks are a list, a later one wins.
+    """
+    return {key: value if key == "hydra" else _inherited(value, composed, ()) for key, value in composed.items()}
+
+
+def _inherited(node: Any, composed: Mapping[str, Any], within: tuple[str, ...]) -> Any:
+    if not isinstance(node, Mapping):
+        return copy.deepcopy(node)
+    result: dict[str, Any] = {}
+    parents = node.get(INHERITS, [])
+    for parent in [parents] if isinstance(parents, str) else parents:
+        base: Any = composed
+        for part in parent.split("."):
+            base = base.get(part) if isinstance(base, Mapping) else None
+        if not isinstance(base, Mapping) or parent in within:
+            raise InputError(
+                f"{INHERITS}: {parent} is not allowed: it must name a block that does not inherit from this one"
+            )
+        result = _laid_over(result, _forwarded(_inherited(base, composed, (*within, parent)), parent))
+    own = {key: _inherited(value, composed, within) for key, value in node.items() if key != INHERITS}
+    return _laid_over(result, own)
+
+
+def _forwarded(node: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+    return {
+        key: _forwarded(value, f"{prefix}.{key}") if isinstance(value, Mapping)
+        else value if key.startswith("_") else f"${{{prefix}.{key}}}"
+        for key, value in node.items()
+        if key != "cases"
+    }  # fmt: skip
+
+
+def _laid_over(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    result = dict(base)
+    for key, value in own.items():
+        both = isinstance(value, Mapping) and isinstance(result.get(key), Mapping)
+        result[key] = _laid_over(result[key], value) if both and "_target_" not in value else value
+    return result
+
+
+def forced(overrides: Sequence[str], raw: Mapping[str, Any]) -> list[str]:
+    """Overrides of inherited keys, which the files do not spell out, as Hydra takes them."""
+    keys = set(_keys(raw))
+    return [f"++{text}" if re.match(r"[A-Za-z_]\w*\.", text) and text.partition("=")[0] not in keys
+            and not text.startswith("hydra") else text for text in overrides]  # fmt: skip
+
+
+def as_written(chapter: str) -> dict[str, Any]:
+    """The shipped configuration of a chapter as its files have it, inheritance not filled in."""
+    _offer(chapter)
+    return _shipped(str(config_dir()), chapter, _changed(chapter))
+
+
 def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
     """Keys set by the files of a folder that overrides such as ``+own=compare`` choose."""
     keys: list[str] = []
     for text in overrides:
-        group, _, options = text.lstrip("+").partition("=")
-        for option in options.strip("[]").split(","):
-            path = Path(folder, group, option.strip("'\" ")).with_suffix(".yaml")
+        override = parsed(text)
+        chosen = override.value() if override else None
+        for option in chosen if isinstance(chosen, list) else [chosen]:
+            path = Path(folder, override.key_or_group if override else "", f"{str(option).removesuffix('.yaml')}.yaml")
             if path.is_file():
-                try:
-                    content = yaml.safe_load(path.read_text()) or {}
-                except (UnicodeDecodeError, yaml.YAMLError) as error:
-                    raise InputError(f"{path} is no YAML file: {' '.join(str(error).split())}") from error
-                if not isinstance(content, dict):
-                    raise InputError(f"{path} holds no keys: it must consist of lines such as 'only: EXPERIMENT'")
-                keys += content
+                keys += read_config(path)
     return keys
+
+
+def read_config(path: Path) -> dict[str, Any]:
+    """The content of a configuration file. Raises InputError that names the file, and the line that is wrong."""
+    try:
+        content: Any = OmegaConf.to_container(OmegaConf.create(path.read_text("utf-8")), resolve=False)
+    except AssertionError:
+        content = None
+    except (yaml.YAMLError, OmegaConfBaseException, ValueError) as error:
+        raise InputError(f"{path} is no YAML file: {' '.join(str(error).split())}") from error
+    if not isinstance(content, dict) or not content or not all(isinstance(key, str) for key in content):
+        raise InputError(f"{path} holds no keys: it must consist of lines such as 'only: EXPERIMENT'")
+    return content
 
 
 def _offer(chapter: str) -> None:
@@ -214,7 +322,7 @@ def _offer(chapter: str) -> None:
     if chapter == chapters.OWN or not chapters.is_added(chapter):
         return
     for name, path in config_files(chapter).items():
-        node = OmegaConf.create({name: yaml.safe_load(path.read_text("utf-8"))})
+        node = OmegaConf.create({name: read_config(path)})
         ConfigStore.instance().store(f"{name}.yaml", node, group=f"chapter/{chapter}", package="_global_")
     defaults = {"defaults": [f"{chapter}/{name}" for name in config_files(chapter)]}
     ConfigStore.instance().store(f"{chapter}.yaml", defaults, group="chapter", package="_global_")
@@ -237,16 +345,28 @@ def _compose(overrides: list[str]) -> dict[str, Any]:
     return OmegaConf.to_container(config, resolve=False)  # type: ignore[return-value]
 
 
+def parsed(text: str) -> Override | None:
+    """What Hydra's grammar makes of a word, None where it is none of its overrides."""
+    try:
+        return OverridesParser.create().parse_override(text)
+    except HydraException:
+        return None
+
+
+def in_quotes(text: str) -> str:
+    """A text that Hydra's grammar takes as it is."""
+    return "'" + text.replace("'", "\\'") + ("\\'" if text.endswith("\\") else "'")
+
+
 def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> None:
     """Refuse overrides that do not parse or whose key the shipped configuration does not have."""
     keys = list(_keys(shipped))
     for text in overrides:
-        try:
-            override = OverridesParser.create().parse_override(text)
-        except HydraException as error:
+        override = parsed(text)
+        if override is None:
             raise InputError(
                 f"'{text}' is not an override of the form key=value, such as chapter=2, only=EXPERIMENT or figure=2.7"
-            ) from error
+            )
         key = override.key_or_group
         if override.is_add() or override.is_force_add() or "/" in key or key.startswith("hydra"):
             continue
@@ -303,6 +423,10 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
         if name == "summary" or not re.fullmatch(r"[\w+-]+", name):
             raise InputError(
                 f"{experiment}.cases: '{name}' is not allowed as a name: use letters, digits and '_', and not 'summary'"
+            )
+        if twin := next((known for known in result if known != name and known.lower() == name.lower()), None):
+            raise InputError(
+                f"{experiment}.cases: '{name}' and '{twin}' differ in case alone: not every disk keeps both"
             )
         merged = copy.deepcopy(base)
         for key, value in overrides.items():
@@ -463,6 +587,24 @@ def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: st
                     dotted = f"{where}.{key}.{place}".rstrip(".")
                     shown = "null" if item is None else repr(item)
                     raise InputError(f"{dotted} = {shown} is not allowed: it must be a number")
+
+
+_A_LINK = ("lengths", "masses", "inertias", "centres")  # one value a link each
+_VECTOR = re.compile(r"(^|_)(base|centre|place|offset|force|gravity|semi_axes|position|pose|start|goal)$")
+
+
+def check_lengths(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
+    """Refuse lists that do not have as many numbers as what they describe has: a link, an axis, a joint."""
+    links = {key: len(config[key]) for key in _A_LINK if isinstance(config.get(key), list)}
+    if len(set(links.values())) > 1:
+        shown = ", ".join(f"{key} has {count}" for key, count in links.items())
+        raise InputError(f"{where}: {shown} values: each must have one for every link")
+    for key, value in config.items():
+        book = shipped.get(key)
+        if isinstance(value, Mapping) and isinstance(book, Mapping):
+            check_lengths(value, book, f"{where}.{key}")
+        elif isinstance(value, list) and isinstance(book, list) and _VECTOR.search(key) and len(value) != len(book):
+            raise InputError(f"{where}.{key} = {value} is not allowed: it must have {len(book)} values")
 
 
 def _whole(value: Any) -> bool:

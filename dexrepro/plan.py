@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import fnmatch
 import glob
 import hashlib
 import importlib.util
@@ -11,7 +12,7 @@ import sys
 import tempfile
 import uuid
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
@@ -22,18 +23,22 @@ from dexrepro.case import targets
 from dexrepro.config import (
     SETTINGS,
     InputError,
+    check_lengths,
     check_types,
+    check_words,
     compose_chapter,
     differences,
     experiment_cases,
     leaves,
     nearest,
     resolved_block,
+    words_of,
 )
 from dexrepro.experiment import Experiment
 from dexrepro.storage import digest_of
 
 NUMERICAL = ("numpy", "scipy", "pybullet")  # packages whose version can change a number
+PARTIAL = "case="  # begins the word by which a result of some cases differs from the whole one
 
 
 @dataclass(frozen=True)
@@ -101,15 +106,42 @@ def plan_chapter(
     shipped = compose_chapter(chapter)
     if config["gui"]:
         _require_display()
-    results = writable(Path(config["results"])) if write else Path(config["results"])
+    results = Path(config["results"]).expanduser()
+    if write:
+        writable(results)
     plans, skipped = [], {}
     for experiment in select(chapter, config["only"], config["figure"]):
-        absent = [name for name in experiment.requires if importlib.util.find_spec(name) is None]
-        if absent:
-            skipped[experiment.name] = f"needs {', '.join(absent)} (an optional extra of dexrepro)"
+        if needed := lacking(experiment):
+            skipped[experiment.name] = needed
             continue
         plans.append(_plan(chapter, experiment.name, config, shipped, results, perturbation))
-    return plans, skipped
+    return _of_cases(plans, config["case"]), skipped
+
+
+def _of_cases(plans: list[Plan], wanted: str | Sequence[str] | None) -> list[Plan]:
+    """The plans for some of their cases, by name or pattern: a result of its own, which stands for no whole one."""
+    if wanted is None:
+        return plans
+    patterns = [wanted] if isinstance(wanted, str) else list(map(str, wanted))
+    names = [job.case for plan in plans for job in plan.jobs]
+    for pattern in patterns:
+        if not fnmatch.filter(names, pattern):
+            raise InputError(f"unknown case '{pattern}': {nearest(pattern, dict.fromkeys(names))}")
+    result = []
+    for plan in plans:
+        jobs = [job for job in plan.jobs if any(fnmatch.fnmatchcase(job.case, pattern) for pattern in patterns)]
+        if 0 < len(jobs) < len(plan.jobs):
+            label, chosen = plan.folder.name.rpartition("-")[0] or plan.folder.name, [job.case for job in jobs]
+            folder = plan.folder.parents[1] / "runs" / f"{label}-{digest_of([plan.folder.name, chosen])[:10]}"
+            plan = replace(plan, jobs=jobs, folder=folder, differs=[*plan.differs, f"{PARTIAL}{','.join(chosen)}"])
+        result += [plan] if jobs else []
+    return result
+
+
+def lacking(experiment: Experiment) -> str:
+    """What an experiment needs that is not installed, and how to get it ("" where nothing)."""
+    absent = [name for name in experiment.requires if importlib.util.find_spec(name) is None]
+    return f"needs {', '.join(absent)}: pip install {' '.join(absent)}" if absent else ""
 
 
 def _require_display() -> None:
@@ -137,6 +169,8 @@ def _plan(
         if key not in shipped[name]:
             raise InputError(f"unknown key '{name}.{key}': {nearest(key, shipped[name])}")
     differs = [] if _as_shipped(config, shipped) else _differs(name, config, shipped, cases, block)
+    for values in cases.values() if differs else ():
+        check_words(values, words_of(chapter, name), name)
     folder = results / f"chapter{chapter}" / name
     if differs:
         label = block["name"] if chapter == chapters.OWN else name
@@ -164,6 +198,7 @@ def _differs(
     book = experiment_cases(shipped, name)
     for case, values in cases.items():
         check_types(values, book.get(case, next(iter(book.values()))), name)
+        check_lengths(values, book.get(case, next(iter(book.values()))), name)
     differs = differences(block, resolved_block(shipped, name))
     differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
     differs = differs or differences(cases, book)  # a shared value that only a case refers to

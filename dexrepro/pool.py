@@ -264,7 +264,10 @@ def forget_edited() -> None:
 
 def start_method() -> str:
     """How processes begin: as the program has set it, else by a fork on Linux, where that is quick and safe."""
-    return multiprocessing.get_start_method(allow_none=True) or ("fork" if sys.platform == "linux" else "spawn")
+    chosen = multiprocessing.get_start_method(allow_none=True)
+    if chosen in multiprocessing.get_all_start_methods():  # joblib's workers have one of their own
+        return chosen
+    return "fork" if sys.platform == "linux" else "spawn"
 
 
 def available_cores() -> int:

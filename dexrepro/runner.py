@@ -10,7 +10,7 @@ import subprocess
 import time
 import warnings
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from importlib.metadata import version
@@ -22,7 +22,7 @@ from dexrepro.case import live
 from dexrepro.case import run as run_case
 from dexrepro.config import InputError
 from dexrepro.experiment import Config, Experiment, Metrics
-from dexrepro.plan import NUMERICAL, Job, Plan, import_anew, own_digest, presentation
+from dexrepro.plan import NUMERICAL, PARTIAL, Job, Plan, import_anew, own_digest, presentation
 from dexrepro.pool import COMPLETES, Failure, Pool, start_method
 from dexrepro.progress import Progress, Silent
 from dexrepro.recordings import load_recording, save_recording
@@ -175,7 +175,8 @@ def assemble(plan: Plan) -> list[Job]:
     nested: dict[str, Metrics] = {name: data["metrics"] for name, data in cases.items()}
     configs = {name: data["config"] for name, data in cases.items()}
     config = Config.of({**plan.block, "cases": configs})
-    summarise(experiment, nested, config)
+    if not _of_some_cases(plan.differs):  # a number over the cases is one over all of them
+        summarise(experiment, nested, config)
     with whole_folder(plan.folder) as folder:
         (folder / "series").mkdir()
         for job in plan.jobs:
@@ -208,6 +209,20 @@ def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config
         nested[SUMMARY] = function(nested, config)
 
 
+@contextlib.contextmanager
+def _lenient(differs: Sequence[str]) -> Iterator[None]:
+    """Let pass what fails for want of the other cases, in a result of some alone."""
+    try:
+        yield
+    except Exception:
+        if not _of_some_cases(differs):
+            raise
+
+
+def _of_some_cases(differs: Sequence[str]) -> bool:
+    return any(text.startswith(PARTIAL) for text in differs)
+
+
 def present(chapter: str, experiment: Experiment, folder: Path) -> None:
     """Evaluate claims, draw figures and write tables in a result folder, from its files alone."""
     from dexrepro.report import style
@@ -228,10 +243,11 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
         shutil.rmtree(folder / name, ignore_errors=True)
         (folder / name).mkdir()
     if tabulate := experiment.function("tabulate"):
-        for identifier, table in tabulate(recordings, nested, config).items():
-            table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
+        with _lenient(run["differs"]):
+            for identifier, table in tabulate(recordings, nested, config).items():
+                table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
     if draw := experiment.function("draw"):
-        with style.style():
+        with style.style(), _lenient(run["differs"]):
             for identifier, figure in draw(recordings, nested, config).items():
                 style.save(figure, folder / "figures", identifier)
 

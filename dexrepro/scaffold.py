@@ -183,7 +183,7 @@ def new_controller(name: str, kind: str, folder: Path) -> tuple[Path, Path, str]
     if importlib.util.find_spec(module) is not None:
         raise InputError(f"'{name}' is not allowed: {law.name} would hide the module '{module}' of Python or a package")
     template = TEMPLATES[kind]
-    law.write_text(template.law.format(name=name))
-    test.write_text(template.test.format(name=name, module=module))
+    law.write_text(template.law.format(name=name), encoding="utf-8")
+    test.write_text(template.test.format(name=name, module=module), encoding="utf-8")
     case = template.comparison.format(law=f"{{_target_: {module}.{name}, {template.settings}}}")
     return law, test, f"dexrepro run only={case.partition('.')[0]} '+{case}'"

@@ -18,8 +18,8 @@ def rows() -> list[dict[str, Any]]:
 
 def _row(number: str) -> dict[str, Any]:
     chapter = chapters.load(number)
-    stored = [baselines.Baseline.of(number, experiment.name).metrics for experiment in chapter.experiments]
-    metrics = {name: entry["value"] for group in stored for name, entry in group.items()}
+    stored = baselines.stored(number).values()
+    metrics = {name: entry["value"] for baseline in stored for name, entry in baseline.metrics.items()}
     evaluated = [claim.evaluate(metrics) for claim in chapter.claims if claim.source == "book"]
     words = study.robustness_of(number)
     severe = [item for item in evaluated if item.verdict in (REPRODUCED, AFTER_CORRECTION) and item.severe]

@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from dexrepro import chapters
-from dexrepro.config import InputError, check_overrides, compose_chapter, nearest, own_keys
+from dexrepro.config import (
+    InputError,
+    as_written,
+    check_overrides,
+    compose_chapter,
+    forced,
+    in_quotes,
+    nearest,
+    own_keys,
+    parsed,
+)
 from dexrepro.plan import select
+
+FILES = ("demonstrations", "csv", "file", "path")  # keys whose values are names of files
 
 
 class Selection(NamedTuple):
@@ -25,7 +38,7 @@ class Selection(NamedTuple):
 
 def selected(words: Iterable[str], extra: Sequence[str] = ()) -> Selection:
     """What the words ``key=value`` of a command select; ``extra``: keys that it knows beside the common ones."""
-    overrides = [quoted(text) for text in words]
+    overrides = list(words)
     for text in overrides:
         if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers", *extra):
             more = "".join(f", {key}=" for key in extra)
@@ -42,7 +55,7 @@ def selected(words: Iterable[str], extra: Sequence[str] = ()) -> Selection:
     return Selection(
         numbers,
         only,
-        Path(values.get("results", "results").strip("'\"")),
+        Path(values.get("results", "results").strip("'\"")).expanduser(),
         positive_workers(int(workers) if workers and workers.isdigit() else workers),
         {key: value for key, value in values.items() if key in extra},
     )
@@ -104,21 +117,54 @@ def of_chapter(number: str, numbers: Sequence[str], overrides: Sequence[str]) ->
     return result
 
 
-def checked_chapter(overrides: Sequence[str], extra_dir: str | None) -> list[str]:
-    """Refuse what no job of a sweep could use, before Hydra starts any; the chapter where overrides only imply it."""
+def for_hydra(arguments: Sequence[str], overrides: Sequence[str], extra_dir: str | None) -> list[str]:
+    """Arguments of a sweep as Hydra takes them, with the chapter where overrides only imply it.
+
+    Raises InputError for what no job could use, before Hydra starts any.
+    """
     numbers, rest = chapters_of(overrides, extra_dir)
     if extra_dir is None:  # what its files add is known to Hydra alone
         check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
     named = any(re.match(r"chapter=|figure=.*,", text) for text in overrides)
-    return [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and not named else []
+    implied = [f"chapter='{numbers[0]}'"] if len(numbers) == 1 and not named else []
+    return [
+        *forced(arguments, {key: value for number in numbers for key, value in as_written(number).items()}),
+        *implied,
+    ]
 
 
 def quoted(argument: str) -> str:
-    """Chapter and figure numbers as texts: Hydra refuses an int as a group choice and reads 2.10 as 2.1."""
-    match = re.fullmatch(r"(chapter|figure)=([\w.]+(?:,[\w.]+)*)", argument)
-    if not match or match[2] == "null":
+    """A word as Hydra's grammar wants it: it refuses an int as a group choice, reads 2.10 as 2.1, and keeps for itself
+    many characters of file names, such as brackets, ``=``, commas, ``~`` and all beyond ASCII."""
+    if match := re.fullmatch(r"(chapter|figure)=([\w.]+(?:,[\w.]+)*)", argument):
+        values = match[2].split(",")
+        return argument if match[2] == "null" else f"{match[1]}=" + ",".join(f"'{value}'" for value in values)
+    key, mark, value = argument.partition("=")
+    if key in ("case", "cases") and mark:
+        key, argument = "case", f"case=[{value}]" if "," in value and value[0] not in "['\"" else f"case={value}"
+    if not mark or not value or key.startswith("-"):
         return argument
-    return f"{match[1]}=" + ",".join(f"'{value}'" for value in match[2].split(","))
+    understood = parsed(argument)
+    text = understood.value() if understood and not understood.is_sweep_override() else None
+    if understood and (text == value or not _names_file(key, value)):
+        return argument
+    if not understood and value[0] in "[{" and parsed(inside := f"{key}={_ITEM.sub(_quoted_item, value)}"):
+        return inside
+    return argument if value[0] in "[{'\"" and not os.path.exists(value) else f"{key}={in_quotes(value)}"
+
+
+def _names_file(key: str, value: str) -> bool:
+    """Whether a value that Hydra reads as a number, a list or the like is meant as a name."""
+    if key == "results" or re.fullmatch(r"\+\w+", key):
+        return value != "null" and value[0] not in "'\"[{" and "," not in value
+    return ("," in value or key.rpartition(".")[2] in FILES) and os.path.exists(os.path.expanduser(value))
+
+
+_ITEM = re.compile(r"(?<=[:,\[{])(\s*)([^'\"\[\]{},:\s][^'\"\[\]{},:]*?)(?=\s*[,}\]])")
+
+
+def _quoted_item(item: re.Match[str]) -> str:
+    return item[1] + (item[2] if parsed(f"key={item[2]}") else in_quotes(item[2]))
 
 
 def positive_workers(value: Any) -> int | None:

@@ -212,7 +212,7 @@ def _kept(chapter: str, experiment: str, results: Path, only: int | None = None)
     found, claims = {}, chapters.load(chapter).claims_of(experiment)
     for update in (True, False):
         for entry in _read(_lines(summary_file(experiment, results, update))):
-            if only in (None, entry["index"]):
+            if only in (None, entry["index"]) and entry["index"] >= 0:
                 values, block = draw(chapter, experiment, entry["index"])
                 if entry["digest"] == _digest(claims, block, values["seed"]):
                     found[entry["index"]] = entry
@@ -224,7 +224,7 @@ def _folder(results: Path) -> Path:
 
 
 def _size(summary: Path) -> int:
-    return int(read_json(summary)["samples"]) if summary.exists() else 0
+    return int(_summary(summary)["samples"]) if summary.exists() else 0
 
 
 def _lines(summary: Path) -> Path:
@@ -265,7 +265,20 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
 def stored(results: Path) -> list[dict[str, Any]]:
     """Every study there is: of those shipped and those made here, the one of more samples; ours where equal."""
     paths = [*(baseline_dir() / "study").glob("*.json"), *_folder(results).glob("*.json")]
-    return [read_json(path) for _, path in sorted({path.name: path for path in sorted(paths, key=_size)}.items())]
+    return [_summary(path) for _, path in sorted({path.name: path for path in sorted(paths, key=_size)}.items())]
+
+
+def _summary(path: Path) -> dict[str, Any]:
+    """A stored summary. Raises InputError where the file is none."""
+    try:
+        found: dict[str, Any] = read_json(path)
+        numbers = [found["samples"], *(row[key] for row in found["claims"].values() for key in ("samples", "holds"))]
+        if not all(isinstance(number, int) for number in numbers) or not isinstance(found["chapter"], str):
+            raise ValueError("it counts no samples of a chapter")
+    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        raise InputError(f"{path} is no study ({reason}); remove it and repeat: dexrepro study") from error
+    return found
 
 
 def robustness_of(chapter: str, results: Path = Path("results")) -> dict[str, str]:
@@ -292,10 +305,12 @@ def _most_influential(margins: Any, values: Sequence[Mapping[str, float]]) -> tu
 
 
 def _read(path: Path) -> Iterator[dict[str, Any]]:
-    if path.exists():
-        for line in path.read_text().splitlines():
-            with suppress(ValueError):  # a line may have been cut short
-                yield json.loads(line)
+    """The samples of a file; what is none (a line may have been cut short) is left out."""
+    for line in path.read_bytes().splitlines() if path.exists() else ():
+        with suppress(ValueError, RecursionError, TypeError, LookupError):
+            entry = json.loads(line)
+            if isinstance(entry["index"], int) and {"digest", "values", "margins", "error"} <= set(entry):
+                yield entry
 
 
 def _get(node: Any, dotted: str) -> Any:

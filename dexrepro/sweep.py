@@ -14,7 +14,7 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 
-from dexrepro.config import InputError, config_dir
+from dexrepro.config import InputError, config_dir, in_quotes
 
 PLUGINS = {  # by launcher: the package that has it, and the extra that brings it
     "ray": ("hydra_plugins.hydra_ray_launcher", "ray"),
@@ -35,8 +35,9 @@ def launch(arguments: Sequence[str], job: Callable[[Any], None]) -> None:
     plugin, extra = PLUGINS.get(values.get("hydra/launcher", ""), ("", ""))
     if extra and importlib.util.find_spec(plugin) is None:
         raise InputError(f"hydra/launcher={values['hydra/launcher']} needs: pip install 'dexrepro[{extra}]'")
-    results = values.get("results", "results").strip("'\"")
-    sys.argv = ["dexrepro run", *flags, f"hydra.sweep.dir='{Path(results, '.sweep').absolute()}'", *overrides]
+    results = Path(values.get("results", "results").strip("'\"")).expanduser()
+    sweep = in_quotes(str((results / ".sweep").absolute()))
+    sys.argv = ["dexrepro run", *flags, f"hydra.sweep.dir={sweep}", *overrides]
     os.environ["HYDRA_FULL_ERROR"] = "1"  # Hydra raises instead of printing a traceback
     try:
         hydra.main(str(config_dir().resolve()), "config", version_base="1.3")(job)()

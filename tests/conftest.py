@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import multiprocessing
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -13,8 +15,10 @@ from pathlib import Path
 import pytest
 
 import dexrepro
-from dexrepro import chapters
+from dexrepro import chapters, cli
 
+if method := os.environ.get("DEXREPRO_TEST_START"):  # spawn: as processes begin on macOS and Windows
+    multiprocessing.set_start_method(method, force=True)
 ROOT = Path(dexrepro.__file__).parent.parent
 TOY = Path(__file__).parent / "toy"
 
@@ -45,16 +49,18 @@ def toy(tmp_path: Path, toy_book: Path) -> Iterator[Path]:
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A report of chapter 90, with a film, built once for the tests of a module."""
+    """A report of chapter 90, with a film, a study and a run with other parameters; built once a module."""
     from PIL import Image
 
+    from dexrepro import study
     from dexrepro.plan import plan_chapter
     from dexrepro.report import page
     from dexrepro.runner import run_plans
 
     with toy_chapter(tmp_path_factory.mktemp("work"), tmp_path_factory.mktemp("toy") / "book") as folder:
-        plans, _ = plan_chapter("90")
-        run_plans(plans, workers=1, force=False)
+        for overrides in ((), ("decay.start=0.5",)):
+            run_plans(plan_chapter("90", overrides)[0], workers=1, force=False)
+        study.run("90", "decay", 8, Path("results"), workers=1)
         films = folder / "results/chapter90/decay/animation"
         films.mkdir()
         for name in ("plain.gif", "plain.png"):
@@ -76,3 +82,51 @@ def shell(tmp_path: Path) -> Shell:
         )
 
     return run
+
+
+Command = Callable[[str], tuple[int, str]]
+
+
+@pytest.fixture
+def bounded() -> Iterator[None]:
+    """A command that hangs fails its test."""
+
+    def late(*_: object) -> None:
+        raise TimeoutError("the command hangs")
+
+    signal.signal(signal.SIGALRM, late)
+    signal.alarm(60)
+    yield
+    signal.alarm(0)
+
+
+@pytest.fixture
+def command(toy: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
+    """Run a command as typed; its exit status and all it says. No fault may give a traceback."""
+    monkeypatch.setattr(sys, "path", [*sys.path])
+
+    def run(text: str) -> tuple[int, str]:
+        capfd.readouterr()
+        status = cli.main(text.split())
+        said = "".join(capfd.readouterr())
+        assert "Traceback" not in said
+        return status, said
+
+    return run
+
+
+@pytest.fixture
+def toy_result(toy: Path, command: Command, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The toy chapter has been run in this folder (once, for all tests)."""
+    kept = tmp_path_factory.getbasetemp() / "results-of-the-toy"
+    if not kept.exists():
+        assert command("run workers=1")[0] == 0
+        shutil.copytree("results", kept)
+    elif not Path("results").exists():
+        shutil.copytree(kept, "results")
+    return toy / "results/chapter90/decay"
+
+
+def whole(folder: Path) -> dict[str, bytes]:
+    """Every file of a result, none of which may be lost."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}

@@ -91,8 +91,8 @@ OWN_LAW = """
 from dexrepro.control.holding_reference import ImpedanceReference
 
 class Further(ImpedanceReference):
-    def __call__(self, position, force):
-        return super().__call__(position, force) + 1e-3
+    def __call__(self, measured):
+        return super().__call__(measured) + 1e-3
 """
 OWN_CASE = """# @package _global_
 only: movement_estimation

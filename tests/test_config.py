@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 
 import pytest
@@ -15,10 +16,12 @@ from dexrepro.config import (
     commented_leaves,
     compose_chapter,
     experiment_cases,
+    inherited,
     leaves_with_comments,
     parse_provenance,
     resolved_block,
 )
+from dexrepro.plan import plan_chapter
 
 CHAPTERS = (*chapters.numbers(), chapters.OWN)
 
@@ -48,7 +51,10 @@ def test_every_leaf_states_where_it_comes_from(chapter: str) -> None:
     silent = [
         key
         for key, value, comment in commented_leaves(chapter)
-        if not key.rpartition(".")[2].startswith("_") and not value.startswith("${") and not parse_provenance(comment)
+        if not key.rpartition(".")[2].startswith("_")
+        and not key.endswith("inherits")
+        and not value.startswith("${")
+        and not parse_provenance(comment)
     ]
     assert not silent
 
@@ -127,3 +133,62 @@ def test_interpolations_of_every_kind(value: str, expected: object) -> None:
 def test_an_interpolation_that_leads_nowhere_is_refused(value: str, word: str) -> None:
     with pytest.raises(InputError, match=word):
         resolved_block({"e": {"value": value}}, "e")
+
+
+def test_cases_that_differ_in_case_alone_are_refused() -> None:
+    with pytest.raises(InputError, match=r"e\.cases: 'A' and 'a' differ in case alone"):
+        experiment_cases({"e": {"x": 1, "cases": {"a": {}, "A": {}}}}, "e")
+
+
+def test_a_block_inherits_what_it_does_not_say_itself() -> None:
+    composed = inherited(
+        {
+            "shared": {"law": {"_target_": "a.Law", "gain": 1.0, "bound": {"low": 0, "high": 2}}, "step": {"dt": 0.1}},
+            "e": {
+                "inherits": "shared.step",
+                "law": {"inherits": "shared.law", "bound": {"high": 3}},
+                "cases": {"a": {}},
+            },
+        }
+    )
+    assert composed["e"]["law"]["gain"] == "${shared.law.gain}"
+    assert resolved_block(composed, "e") == {
+        "dt": 0.1,
+        "law": {"_target_": "a.Law", "gain": 1.0, "bound": {"low": 0, "high": 3}},
+    }
+    with pytest.raises(InputError, match=r"shared\.nothing"):
+        inherited({"e": {"inherits": "shared.nothing"}})
+
+
+def test_an_inherited_key_can_be_overridden_there_and_where_it_comes_from() -> None:
+    key = "barrier_and_switch.law.position_gain"
+    assert resolved_block(compose_chapter("4", [f"{key}=7"]), "barrier_and_switch")["law"]["position_gain"] == 7
+    there = compose_chapter("4", ["shared.two_link.position_gain=8"])
+    assert resolved_block(there, "barrier_and_switch")["law"]["position_gain"] == 8
+    assert resolved_block(there, "skill_reuse")["law"]["position_gain"] == 8
+
+
+@pytest.mark.parametrize("chapter", chapters.numbers())
+def test_every_parameter_that_is_a_word_declares_the_words_there_are(chapter: str) -> None:
+    for key, value, comment in commented_leaves(chapter):
+        word = re.fullmatch(r"['\"]?([A-Za-z]\w*)['\"]?", value)
+        if not word or word[1] in ("true", "false", "null") or ".cases." in key or "inherits" in key or "._" in key:
+            continue
+        origin = parse_provenance(comment)
+        assert origin, key
+        assert word[1] in origin.words or comment.endswith("| any"), key
+
+
+@pytest.mark.parametrize(
+    ("chapter", "override", "sentence"),
+    [
+        ("6", "keep_out.cdmp.law=feedfoward", "must be one of feedforward, printed, consistent, lagged, filter, none"),
+        ("3", "fixed_opening.task=poses", "fixed_opening.task = poses is not allowed: it must be one of position"),
+        ("1", "+force_tracking.cases.mine={motion: sines}", "force_tracking.motion = sines"),
+        ("1", "shared.planar.lengths=[0.5,0.3]", "force_tracking.arm: lengths has 2, masses has 3 values"),
+        ("3", "fixed_opening.centre=[1,2]", "is not allowed: it must have 3 values"),
+    ],
+)
+def test_an_unknown_word_or_a_wrong_length_is_refused(chapter: str, override: str, sentence: str) -> None:
+    with pytest.raises(InputError, match=re.escape(sentence)):
+        plan_chapter(chapter, [override])

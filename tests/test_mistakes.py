@@ -30,7 +30,6 @@ def result(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("seed=true", "seed = True is not allowed"),
         ("workers=true", "workers = True is not allowed"),
         ("results=null", "results = None is not allowed: it must be the name of a folder"),
-        ("results=5", "results = 5 is not allowed"),
         ("force=perhaps", "force = perhaps is not allowed: it must be true or false"),
         ("figure=[90.1,90.2]", "it must be one figure or table"),
         ("+decai.rate=2", "unknown key 'decai': did you mean 'decay'?"),

@@ -12,6 +12,8 @@ import pytest
 import yaml
 from conftest import ROOT
 
+from dexrepro.report.listing import listing
+
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 
 
@@ -83,3 +85,14 @@ def test_the_library_brings_neither_simulation_nor_pictures_nor_configuration(mo
     brought = set(done.stdout.split())
     assert "numpy" in brought
     assert not brought & {"pybullet", "matplotlib", "hydra", "omegaconf", "pandas", "rich", "yaml"}
+
+
+def test_no_two_files_differ_in_case_alone_and_none_has_a_name_that_a_system_refuses() -> None:
+    for chapter in listing()["chapters"]:
+        for experiment in chapter["experiments"]:
+            named = [*experiment["cases"], *experiment["figures"], *experiment["tables"]]
+            assert len({name.lower() for name in named}) == len(named), experiment["name"]
+            assert not [name for name in named if re.search(r'[<>:"/\\|?*]|[ .]$', name)]
+            assert not {name.lower() for name in named} & {"con", "prn", "aux", "nul"}
+    tracked = tool("git", "ls-files").stdout.splitlines()
+    assert len({name.lower() for name in tracked}) == len(tracked)

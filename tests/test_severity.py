@@ -12,8 +12,8 @@ TESTED: tuple[str, ...] = ()
 
 
 def stored_metrics(number: str) -> dict[str, float | None]:
-    groups = baselines.read(number)["metrics"].values()
-    return {name: entry["value"] for group in groups for name, entry in group.items()}
+    stored = baselines.stored(number).values()
+    return {name: entry["value"] for baseline in stored for name, entry in baseline.metrics.items()}
 
 
 @pytest.mark.parametrize("number", TESTED)
@@ -44,7 +44,8 @@ def test_every_predicate_has_been_seen_to_fail(number: str) -> None:
 
 @pytest.mark.parametrize("number", chapters.numbers())
 def test_stored_verdicts_follow_from_stored_metrics(number: str) -> None:
-    stored, metrics = baselines.read(number)["claims"], stored_metrics(number)
+    stored = {key: verdict for item in baselines.stored(number).values() for key, verdict in item.claims.items()}
+    metrics = stored_metrics(number)
     found = {claim.id: claim.evaluate(metrics).verdict for claim in chapters.load(number).claims if claim.predicate}
     assert {key: verdict for key, verdict in found.items() if verdict != NOT_EVALUATED and key in stored} == {
         key: verdict for key, verdict in stored.items() if found.get(key, NOT_EVALUATED) != NOT_EVALUATED

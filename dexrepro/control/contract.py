@@ -14,6 +14,7 @@ Adapters that drive an arm of a World with a law stand in :mod:`dexrepro.physics
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from typing import ClassVar, Generic, Literal, NamedTuple, Protocol, TypeVar
@@ -55,6 +56,14 @@ class Command(NamedTuple):
     torque: Array = EMPTY
     damping: Array | None = None
     force: Array | None = None
+
+
+class Unusable(ValueError):
+    """What a law gave is no command; the sentence shows it."""
+
+
+class Undefined(Unusable):
+    """A law gave numbers that are not finite."""
 
 
 class Law(Protocol):
@@ -167,6 +176,16 @@ def check(law: Law_, kind: Kind) -> Law_:
     raise ValueError(
         f"{_name(type(law))} is no law: its class must declare kind = '{kind}' (kinds are {', '.join(KINDS)})"
     )
+
+
+def number(value: object) -> float:
+    """A value that is one finite number. Raises Undefined or Unusable."""
+    if not isinstance(value, int | float | np.number | np.ndarray) or np.size(value) != 1:
+        raise Unusable(f"it gave {str(value)[:80]}, and one number is wanted")
+    single = float(np.ravel(value)[0]) if isinstance(value, np.ndarray) else float(value)
+    if not math.isfinite(single):
+        raise Undefined(f"it gave {single}, and a finite number is wanted")
+    return single
 
 
 def report(law: object) -> Mapping[str, Real]:

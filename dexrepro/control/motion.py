@@ -60,6 +60,13 @@ class Sampled:
         return Motion(self.position[k], self.velocity[k], self.acceleration[k])
 
 
+def rest(position: ArrayLike) -> Path:
+    """Stays at a position, of joints (n,) [rad] or an end point (d,) [m]."""
+    place = np.array(position, dtype=float)
+    here = Motion(place, np.zeros_like(place), np.zeros_like(place))
+    return lambda time: here
+
+
 def line(start: ArrayLike, end: ArrayLike, period: float) -> Path:
     """Straight between two places (d,) [m], there and back in a period [s], a sine about the middle."""
     first, last = np.array(start, dtype=float), np.array(end, dtype=float)
@@ -98,8 +105,14 @@ def held(curve: Curve, start: float, end: float) -> Path:
     return motion
 
 
+def minimum_jerk(u: ArrayLike) -> Array:
+    """Share 10 u^3 - 15 u^4 + 6 u^5 of a minimum-jerk movement done at normalised times u; still outside [0, 1]."""
+    share: Array = np.clip(np.asarray(u, dtype=float), 0.0, 1.0)
+    return share**3 * (10 + share * (6 * share - 15))
+
+
 def quintic(time: float, duration: float) -> tuple[float, float]:
-    """Share s = 10 u^3 - 15 u^4 + 6 u^5 of a minimum-jerk movement and its rate [1/s] at a time [s]; still outside."""
+    """``minimum_jerk`` in plain floats, for control loops: the share and its rate [1/s] at a time [s]."""
     u = min(max(time / duration, 0.0), 1.0)
     return u**3 * (10 - 15 * u + 6 * u * u), 30 * u * u * (1 - u) ** 2 / duration
 

@@ -17,6 +17,7 @@ import numpy as np
 from scipy import signal
 
 from dexrepro.arrays import Array
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.control.pose_transformation import scaled_path
 
 COMFORTABLE_ROLL = np.deg2rad(40.0)
@@ -59,10 +60,9 @@ class Operator:
         )
 
 
-def minimum_jerk(samples: int) -> Array:
-    """Share of a movement done after each of ``samples`` equal steps, from just above 0 to 1."""
-    t = np.arange(1, samples + 1) / samples
-    return t**3 * (10 - 15 * t + 6 * t**2)
+def strides(samples: int) -> Array:
+    """Share of a minimum-jerk movement done after each of ``samples`` equal steps, from just above 0 to 1."""
+    return minimum_jerk(np.arange(1, samples + 1) / samples)
 
 
 class Tremor:
@@ -106,7 +106,7 @@ class Hand:
         self.samples, self.submovements, self.clutches = 0, 0, 0
         self.parts: list[tuple[Array, Array, Array, Array, Array]] = []
         self._speeds = np.linspace(0.0, 3.0, 301)
-        profile = np.diff(minimum_jerk(100), prepend=0.0)
+        profile = np.diff(strides(100), prepend=0.0)
         self._tool_speeds = (self.scaling(self._speeds[:, None] * profile * 100) * profile).sum(1) * self._speeds
 
     @property
@@ -157,7 +157,7 @@ class Hand:
         end = size * (direction + self.operator.along * along + self.operator.across * across)
         end = end + self.operator.scatter * noise[1]
         self.submovements += 1
-        self._advance(path + minimum_jerk(samples)[:, None] * end, roll)
+        self._advance(path + strides(samples)[:, None] * end, roll)
 
     def reach(self, target: Array, axes: tuple[int, ...] = (0, 1, 2)) -> None:
         """Bring the tool to ``target`` [m] by submovements and visual correction along ``axes``."""
@@ -173,12 +173,12 @@ class Hand:
     def turn(self, angle: float) -> None:
         """Turn the tool by ``angle`` [rad] in one go."""
         samples, path, roll = self._hold(abs(angle) / ROLL_SPEED)
-        self._advance(path, roll + minimum_jerk(samples) * angle * (1 + self.operator.along * self.rng.normal()))
+        self._advance(path, roll + strides(samples) * angle * (1 + self.operator.along * self.rng.normal()))
 
     def clutch(self, centre: Array | None = None, roll: float | None = None, duration: float = 0.6) -> None:
         """Let go of the tool, bring the hand to ``centre`` [m] and ``roll`` [rad], and fix them together anew."""
         samples, path, rolls = self._hold(duration + self.operator.reaction)
-        share = minimum_jerk(samples)
+        share = strides(samples)
         if centre is not None:
             path = path + share[:, None] * (centre - self.centre)
         if roll is not None:

@@ -16,7 +16,7 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.optimize import brentq
 
 from dexrepro.arrays import Array
-from dexrepro.humans.waypoints import minimum_jerk
+from dexrepro.control.motion import minimum_jerk
 
 
 def bump(phase: ArrayLike, peak: ArrayLike, sharpness: ArrayLike) -> Array:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter1d
 
 from dexrepro.arrays import Array
-from dexrepro.humans.waypoints import minimum_jerk
+from dexrepro.control.motion import minimum_jerk
 
 JOINTS = ("left_shoulder", "left_elbow", "left_wrist", "right_shoulder", "right_elbow", "right_wrist")
 SIDES = np.array([-1.0, 1.0])  # left, right

@@ -10,12 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from dexrepro.arrays import Array
-
-
-def minimum_jerk(u: ArrayLike) -> Array:
-    """Progress from 0 to 1 of a minimum-jerk movement at normalised times u (clipped to [0, 1])."""
-    share = np.clip(np.asarray(u, float), 0, 1)
-    return share**3 * (10 + share * (6 * share - 15))
+from dexrepro.control.motion import minimum_jerk
 
 
 def stroke(waypoints: ArrayLike, u: ArrayLike) -> Array:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Protocol, cast
+from typing import Protocol
 
 import numpy as np
 
 from dexrepro.arrays import Array
-from dexrepro.control.contract import Command, HoldingLaw, Law, Measured, NominalModel, check
+from dexrepro.control.contract import Command, HoldingLaw, Law, Measured, NominalModel, Undefined, check, number
 from dexrepro.control.motion import Motion, Path
 from dexrepro.physics.plant import Sense
 
@@ -126,21 +126,27 @@ class Posture:
         return Command(jacobian.T @ (command.force + force) + mass @ wanted, command.damping)
 
 
-def limited(
-    controller: Callable[[Sense], Command], limit: Array | float = math.inf, support: NominalModel | None = None
-) -> Callable[[Sense], Command]:
+class Limited:
     """A controller whose torques stay within +- limit [N m].
 
     support: a model whose gravity torque is added, what holds the arm alone, as an arm's maker does.
     """
 
-    def command(sense: Sense) -> Command:
-        torque, damping, _ = controller(sense)
-        if support is not None:
-            torque = torque + support.gravity(sense.position)
-        return Command(np.minimum(np.maximum(torque, -limit), limit), damping)
+    def __init__(
+        self,
+        controller: Callable[[Sense], Command],
+        limit: Array | float = math.inf,
+        support: NominalModel | None = None,
+    ) -> None:
+        self.law, self.limit, self.support = controller, limit, support
 
-    return command
+    def __call__(self, sense: Sense) -> Command:
+        torque, damping, _ = self.law(sense)
+        if self.support is not None:
+            torque = torque + self.support.gravity(sense.position)
+        if not np.all(np.isfinite(torque)):
+            raise Undefined(f"it gave {torque}, and a torque is finite numbers [N m]")
+        return Command(np.minimum(np.maximum(torque, -self.limit), self.limit), damping)
 
 
 class HoldingDrive:
@@ -164,7 +170,7 @@ class HoldingDrive:
         since, last = self._before
         rate = (position - last) / (time - since) if time > since else 0.0
         self._before = time, position
-        wanted = cast(float, self.law(Measured(time, position, rate, force)))
+        wanted = number(self.law(Measured(time, position, rate, force)))
         limit = self._limit
         self.reference = wanted if limit == math.inf else self.reference + clip(wanted - self.reference, limit)
         return self.reference

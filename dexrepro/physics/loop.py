@@ -13,9 +13,10 @@ import pybullet as bullet
 from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array
+from dexrepro.control.contract import Undefined, Unusable
 from dexrepro.experiment import Recording
 from dexrepro.physics.elements import Element, Ends
-from dexrepro.physics.plant import Controller, NotFinite, NotTorque, Reply, RigidBody, SimulatedArm
+from dexrepro.physics.plant import Controller, Reply, RigidBody, SimulatedArm
 
 Probe = Callable[[], ArrayLike]
 GUARD = 1e3  # sum of an arm's joint angles and rates [rad, rad/s] beyond which a run has diverged
@@ -129,7 +130,7 @@ def run(
         try:
             scene.act(now, sample)
         except LawFailed as failure:
-            if on_divergence == "raise" or not isinstance(failure.__cause__, NotFinite):
+            if on_divergence == "raise" or not isinstance(failure.__cause__, Undefined):
                 raise
             scene.record(now)
             status, done = str(failure), k + 1
@@ -224,7 +225,7 @@ class _Scene:
                     arm.command(answer, None, self._step)
             except (TypeError, ValueError, LookupError, AttributeError, ArithmeticError) as error:
                 what = " ".join(str(error).split())
-                kind = "" if isinstance(error, NotTorque) else f"{type(error).__name__}: "
+                kind = "" if isinstance(error, Unusable) else f"{type(error).__name__}: "
                 name = _name_of(controller)
                 raise LawFailed(f"the law {name} of arm '{arm.name}' failed at {now:.4g} s: {kind}{what}") from error
 
@@ -265,7 +266,9 @@ class _Scene:
 
 def _name_of(controller: Controller) -> str:
     """The class of the law that a controller carries out."""
-    law = getattr(controller, "law", controller)
+    law: object = controller
+    while not hasattr(law, "kind") and hasattr(law, "law"):
+        law = law.law
     return str(getattr(law, "__qualname__", type(law).__name__))
 
 

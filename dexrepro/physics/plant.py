@@ -16,21 +16,13 @@ import pybullet as bullet
 from scipy.spatial.transform import Rotation
 
 from dexrepro.arrays import Array
-from dexrepro.control.contract import Command
+from dexrepro.control.contract import Command, Undefined, Unusable
 from dexrepro.physics.loading import connect, disconnect, lighter, load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import forward, jacobian
 from dexrepro.robots.planar import PlanarTip
 from dexrepro.robots.rotations import rotated
-
-
-class NotTorque(ValueError):
-    """What a law gave is no torque of its arm; the sentence shows the value."""
-
-
-class NotFinite(NotTorque):
-    """A law has become undefined."""
 
 
 class Point:
@@ -253,7 +245,7 @@ class SimulatedArm(Point):
     def command(self, torque: Torque, damping: Torque | None, step: float) -> None:
         """Set this step's joint torque [N m], with damping [N m s/rad] applied implicitly, within the effort limits.
 
-        Raises NotTorque.
+        Raises Unusable.
         """
         if damping is not None:
             torque = self._damped(np.asarray(torque, dtype=float), damping, step)
@@ -264,7 +256,7 @@ class SimulatedArm(Point):
             finite = right = False
         if not (finite and right):
             self.torque = torque if right else self._zeros
-            kind = NotFinite if right else NotTorque
+            kind = Undefined if right else Unusable
             raise kind(f"it gave {str(torque)[:80]}, and a torque is {self.dof} finite numbers [N m]")
         if self.limits is not None:
             torque = [-top if t < -top else top if t > top else t for t, top in zip(torque, self.limits)]

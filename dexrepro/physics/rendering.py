@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -84,3 +85,50 @@ def photograph(client: int, camera: Camera, size: tuple[int, int]) -> Image:
         physicsClientId=client,
     )[2]  # fmt: skip
     return np.asarray(pixels, dtype=np.uint8).reshape(height, width, -1)[:, :, :3].copy()
+
+
+@dataclass(frozen=True)
+class Solid:
+    """What is seen of a link: kind ("box", "sphere", "cylinder", "capsule"), size [m], colour (red to alpha).
+
+    size: three sides of a box, the radius of a sphere, else radius and length. place, turn: in the frame of the link.
+    """
+
+    body: int
+    link: int
+    kind: str
+    size: tuple[float, ...]
+    colour: tuple[float, ...]
+    place: tuple[float, ...]
+    turn: tuple[float, ...]
+
+
+_KINDS = {bullet.GEOM_BOX: "box", bullet.GEOM_SPHERE: "sphere", bullet.GEOM_CYLINDER: "cylinder",
+          bullet.GEOM_CAPSULE: "capsule"}  # fmt: skip
+
+
+def solids(client: int) -> list[Solid]:
+    """Everything in a scene that is seen, meshes apart."""
+    bodies = [bullet.getBodyUniqueId(i, physicsClientId=client) for i in range(bullet.getNumBodies(client))]
+    found = []
+    for body in bodies:
+        for _, link, kind, size, _, place, turn, colour, *_ in bullet.getVisualShapeData(body, physicsClientId=client):
+            if kind in _KINDS and colour[3] > 0:
+                sides = {"box": size, "sphere": size[:1]}.get(_KINDS[kind], (size[1], size[0]))
+                found.append(Solid(body, link, _KINDS[kind], tuple(sides), tuple(colour), place, turn))
+    return found
+
+
+def whereabouts(client: int, seen: Sequence[Solid]) -> Array:
+    """Poses (n, 7) of solids in the world: position [m] and quaternion x, y, z, w."""
+    poses = []
+    for solid in seen:
+        if solid.link < 0:
+            inertial = bullet.getDynamicsInfo(solid.body, -1, physicsClientId=client)[3:5]
+            centre = bullet.getBasePositionAndOrientation(solid.body, physicsClientId=client)
+            frame = bullet.multiplyTransforms(*centre, *bullet.invertTransform(*inertial))
+        else:
+            frame = bullet.getLinkState(solid.body, solid.link, 0, 1, physicsClientId=client)[4:6]
+        place, turn = bullet.multiplyTransforms(*frame, solid.place, solid.turn)
+        poses.append((*place, *turn))
+    return np.array(poses)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import contextlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TypedDict, Unpack
 
 import numpy as np
@@ -15,7 +16,7 @@ from dexrepro.physics import loop
 from dexrepro.physics.elements import Element, Place
 from dexrepro.physics.loading import connect, undamped
 from dexrepro.physics.plant import Controller, Point, RigidBody, SimulatedArm, Touch, touches
-from dexrepro.physics.rendering import Camera, Overhead, look_down, photograph
+from dexrepro.physics.rendering import Camera, Overhead, Solid, look_down, photograph, solids, whereabouts
 from dexrepro.physics.sensor import Sensor
 from dexrepro.robots.arm import GREY, Arm, Colour, Shape
 
@@ -273,18 +274,22 @@ class World:
 
         The state of the simulation is left as it was. size: (width, height) in pixels.
         """
+        with self._posed(positions or {}, poses or {}):
+            return photograph(self.client, camera, size)
+
+    @contextlib.contextmanager
+    def _posed(self, positions: Mapping[str, ArrayLike], poses: Mapping[str, ArrayLike]) -> Iterator[None]:
         state = bullet.saveState(physicsClientId=self.client)
-        for name, position in (positions or {}).items():
+        for name, position in positions.items():
             self.arm(name).reset(np.asarray(position, dtype=float))
-        for name, pose in (poses or {}).items():
+        for name, pose in poses.items():
             values = np.asarray(pose, dtype=float).tolist()
             bullet.resetBasePositionAndOrientation(
                 self._body(name), values[:3], values[3:] or (0, 0, 0, 1), physicsClientId=self.client
             )
-        image = photograph(self.client, camera, size)
+        yield
         bullet.restoreState(stateId=state, physicsClientId=self.client)
         bullet.removeState(state, physicsClientId=self.client)
-        return image
 
     def look_down(self, camera: Overhead) -> tuple[Image, Array]:
         """Colours (height, width, 3) and heights z (height, width) [m] that an overhead camera sees, free of noise."""
@@ -306,12 +311,25 @@ class World:
         self, recording: Recording, time: float, camera: Camera = Camera(), size: tuple[int, int] = (640, 480)
     ) -> Image:
         """Picture (height, width, 3) of the sample of a recording that is nearest to a time [s]."""
+        return self.render(*self._recorded(recording, time), camera, size)
+
+    def animate(self, recording: Recording, times: Sequence[float]) -> tuple[list[Solid], Array]:
+        """What is seen of the scene, and the poses (times, solids, 7) of it at the samples nearest to times [s]."""
+        seen, poses = solids(self.client), []
+        for time in times:
+            with self._posed(*self._recorded(recording, time)):
+                poses.append(whereabouts(self.client, seen))
+        return seen, np.array(poses)
+
+    def _recorded(self, recording: Recording, time: float) -> tuple[dict[str, Array], dict[str, Array]]:
+        """Joint angles of the arms and poses of the bodies at the sample of a recording that is nearest to a time."""
         index = int(np.abs(recording.time - time).argmin())
-        positions = {
-            name: recording[f"{name}.position"][index] for name in self.arms if f"{name}.position" in recording
-        }
-        poses = {name: recording[f"{name}.pose"][index] for name in self.bodies if f"{name}.pose" in recording}
-        return self.render(positions, poses, camera, size)
+
+        def of(names: Iterable[str], channel: str) -> dict[str, Array]:
+            found = {name: f"{name}.{channel}" for name in names}
+            return {name: recording[key][index] for name, key in found.items() if key in recording}
+
+        return of(self.arms, "position"), of(self.bodies, "pose")
 
     def _body(self, name: str) -> int:
         return self.bodies[name].body if name in self.bodies else self.arm(name).body

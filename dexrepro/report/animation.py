@@ -48,13 +48,29 @@ def render(folder: Path, case: str | None = None, kind: str = "gif", allow: Sequ
     cases = run["cases"]
     if case is not None and case not in cases:
         raise InputError(f"unknown case '{case}' of {experiment.name}: {nearest(case, cases)}")
+    config, recording, chosen = recorded_scene(folder, experiment, case, allow)
+    target = folder / "animation" / f"{chosen}.{kind}"
+    target.parent.mkdir(exist_ok=True)
+    frames = list(_frames(experiment, config, recording))
+    frames[len(frames) // 2].save(target.with_suffix(".png"), optimize=True)
+    _write_gif(frames, target) if kind == "gif" else _write_mp4(frames, target)
+    return target
+
+
+def recorded_scene(
+    folder: Path, experiment: Experiment, case: str | None = None, allow: Sequence[str] = ()
+) -> tuple[Config, Recording, str]:
+    """What a scene is built from, its recording, and the case: the one asked for, the film's, or the first with an arm.
+
+    Raises InputError where no case has recorded an arm, or config.yaml is damaged or names other code (see ``render``).
+    """
+    run = read_json(folder / "run.json")
+    cases = run["cases"]
     chosen = case or (experiment.film.case if experiment.film and experiment.film.case in cases else None)
     recording, chosen = _recording(folder, experiment, [chosen] if chosen else list(cases))
     raw = read_yaml(folder / "config.yaml").get("cases", {}).get(chosen)
     if not isinstance(raw, dict):
         raise InputError(f"{folder / 'config.yaml'} has no configuration of the case '{chosen}'")
-    target = folder / "animation" / f"{chosen}.{kind}"
-    target.parent.mkdir(exist_ok=True)
     raw |= {"law": None} if "law" in raw else {}  # a scene needs none, and the user's may be in another folder
     ours = set(targets(compose_chapter(run["chapter"])))
     refuse_foreign(
@@ -62,10 +78,7 @@ def render(folder: Path, case: str | None = None, kind: str = "gif", allow: Sequ
         str(folder / "config.yaml"),
         lambda target: target in ours or any(target.startswith(f"{module}.") for module in allow),
     )
-    frames = list(_frames(experiment, live(raw), recording))
-    frames[len(frames) // 2].save(target.with_suffix(".png"), optimize=True)
-    _write_gif(frames, target) if kind == "gif" else _write_mp4(frames, target)
-    return target
+    return live(raw), recording, chosen
 
 
 def film_of(folder: Path, experiment: Experiment) -> Path | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -9,17 +10,17 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
 from PIL import Image
 
 from dexrepro import chapters
 from dexrepro.claims import Claim, Erratum
 from dexrepro.config import compose_chapter, experiment_cases, provenance, resolved_block
 from dexrepro.experiment import Experiment
+from dexrepro.plan import lacking, outdated, plan_chapter
 from dexrepro.report import equations, explorer, parameters, relations, sources, studies, verdicts, words
-from dexrepro.report.damage import check_result
+from dexrepro.report.damage import check_result, is_safe, read_table
 from dexrepro.report.style import file_stem
-from dexrepro.storage import read_json
+from dexrepro.storage import read_json, read_yaml
 
 SCALE = 1.7  # pixels a point of a figure
 THUMBNAIL = 240  # pixels
@@ -27,26 +28,26 @@ OPEN_ROWS = 8  # a longer table is folded
 
 
 class Contents:
-    """One chapter. folder: of the report; pages point at lines of the code through ``code``."""
+    """One chapter, of the results in ``places`` by experiment; pages point at lines of the code through ``code``."""
 
     def __init__(
-        self, number: str, results: Path, folder: Path, code: sources.Sources, found: Mapping[str, Any]
+        self, number: str, places: Mapping[str, Path], folder: Path, code: sources.Sources, studies: Mapping[str, Any]
     ) -> None:
-        self.number, self.place, self.folder, self.code, self.studies = (
-            number,
-            results / f"chapter{number}",
-            folder,
-            code,
-            found,
-        )
+        self.number, self.places, self.folder, self.code, self.studies = number, places, folder, code, studies
         self.chapter = chapters.load(number)
         self.composed, self.origins = compose_chapter(number), provenance(number)
         self.metrics: dict[str, Any] = {}
         self.experiments: list[dict[str, Any]] = []
-        made = [e for e in self.chapter.experiments if (self.place / e.name / "run.json").exists()]
+        made = [experiment for experiment in self.chapter.experiments if experiment.name in places]
+        self.absent = [
+            {"name": e.name, "number": number, "why": lacking(e)} for e in self.chapter.experiments if e not in made
+        ]
         for experiment in made:
-            check_result(self.place / experiment.name, "metrics.json", "claims.json")
-            self.metrics |= read_json(self.place / experiment.name / "metrics.json")
+            check_result(places[experiment.name], "metrics.json", "claims.json", "config.yaml")
+            self.metrics |= read_json(places[experiment.name] / "metrics.json")
+        as_shipped = [experiment.name for experiment in made if places[experiment.name].name == experiment.name]
+        plans = plan_chapter(number, write=False)[0] if as_shipped else []
+        self.plans = {plan.experiment: plan for plan in plans if plan.experiment in as_shipped}
         self.definitions = relations.definitions(self.chapter.folder) if made else {}
         self.errata = {item.id: self._erratum(item) for item in self.chapter.errata} if made else {}
         self.experiments = [self._experiment(experiment) for experiment in made]
@@ -64,6 +65,7 @@ class Contents:
             "title": self.chapter.title,
             "fairness": getattr(self.chapter, "fairness", ""),
             "experiments": self.experiments,
+            "absent": self.absent,
             "claims": claims,
             "score": verdicts.score(claims),
             "symbols": parameters.index(self.composed, self.origins, rows),
@@ -80,13 +82,14 @@ class Contents:
     # ------------------------------------------------------------------------------------------------- one experiment
 
     def _experiment(self, experiment: Experiment) -> dict[str, Any]:
-        place, target = self.place / experiment.name, self.folder / "files" / experiment.name
+        place = self.places[experiment.name]
+        target = self.folder / "files" / place.name
         target.mkdir(parents=True)
         run, study = read_json(place / "run.json"), self._study(experiment.name, target)
         files = []
         for path in sorted([*place.glob("*.json"), place / "config.yaml", *place.glob("series/*")]):
             copy(path, target / path.name)
-            files.append({"name": path.name, "path": f"files/{experiment.name}/{path.name}"})
+            files.append({"name": path.name, "path": f"files/{target.name}/{path.name}"})
         written = {claim.id: claim for claim in self.chapter.claims}
         claims = [
             self._claim(entry, written.get(entry["id"]), study["claims"].get(entry["id"]) if study else None)
@@ -95,9 +98,11 @@ class Contents:
         figures = [
             self._figure(identifier, figure.caption, figure.alt, place, target)
             for identifier, figure in experiment.figures.items()
-            if (place / "figures" / f"{file_stem(identifier)}.svg").exists()
+            if is_safe(place / "figures" / f"{file_stem(identifier)}.svg")
         ]
         series = explorer.write(place, target, run["cases"], experiment.film)
+        if series:
+            series["scene"] = explorer.scene(place, target, experiment)
         factor = f", {run['real_time_factor']:.1f} times real time" if run["real_time_factor"] else ""
         packages = ", ".join(f"{name} {version}" for name, version in run["packages"].items())
         return {
@@ -120,7 +125,10 @@ class Contents:
             ],
             "study": study,
             "series": series,
-            "parameters": parameters.table(experiment.name, self.composed, self.origins),
+            "parameters": parameters.table(
+                experiment.name, self.composed, self.origins, read_yaml(place / "config.yaml")
+            ),
+            "outdated": outdated(self.plans[experiment.name], run) if experiment.name in self.plans else "",
             "references": [
                 {**vars(item), "ours": self.metrics.get(item.metric)}
                 for item in self.chapter.references
@@ -181,7 +189,7 @@ class Contents:
         block = [resolved_block(self.composed, experiment.name), experiment_cases(self.composed, experiment.name)]
         laws = relations.laws(block)
         own = {sources.place(thing) for thing in functions if thing}
-        texts = [path.read_text() for path in {path for path, _ in own}] + [law.__doc__ or "" for law in laws]
+        texts = [path.read_text("utf-8") for path in {path for path, _ in own}] + [law.__doc__ or "" for law in laws]
         return {
             "functions": [
                 {"name": thing.__name__, **self.code.link(*sources.place(thing))} for thing in functions if thing
@@ -195,6 +203,14 @@ class Contents:
         if not found or not found["claims"]:
             return None
         path = studies.save(found, target / "study.svg")
+        if found["draws"]:
+            said = {claim.id: claim.statement for claim in self.chapter.claims}
+            data = {
+                "chapter": self.number, "experiment": experiment, "draws": found["draws"], "varied": found["varied"],
+                "claims": [{"id": key, "statement": said.get(key, ""), "parameter": row["parameter"]}
+                           for key, row in found["claims"].items()],
+            }  # fmt: skip
+            (target / "study.js").write_text(words.script(f"STUDIES[{json.dumps(target.name)}]", data), "utf-8")
         return {**found, "svg": f"files/{target.name}/{path.name}", "finding": studies.finding(found)}
 
     def _figure(self, identifier: str, caption: str, alt: str, place: Path, target: Path) -> dict[str, Any]:
@@ -202,7 +218,7 @@ class Contents:
         for suffix in (".svg", ".png"):
             copy(place / "figures" / f"{stem}{suffix}", target / f"{stem}{suffix}")
         _thumbnail(target / f"{stem}.png", target / f"{stem}.webp")
-        head = (target / f"{stem}.svg").read_text()
+        head = (target / f"{stem}.svg").read_text("utf-8")
         return {
             "id": identifier,
             "chapter": self.number,
@@ -216,9 +232,11 @@ class Contents:
         }
 
     def _table(self, identifier: str, title: str, path: Path, target: Path) -> dict[str, Any]:
-        frame = pd.read_csv(path)
+        frame = read_table(path)
         copy(path, target / path.name)
-        (target / f"{identifier}.tex").write_text(frame.to_latex(index=False, float_format="%.4g", escape=True))
+        (target / f"{identifier}.tex").write_text(
+            frame.to_latex(index=False, float_format="%.4g", escape=True), encoding="utf-8"
+        )
         base = f"files/{target.name}/{identifier}"
         return {
             "id": identifier,

@@ -10,11 +10,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import yaml
 
 from dexrepro import chapters
 from dexrepro.config import InputError
 from dexrepro.experiment import Experiment
+from dexrepro.recordings import read_frame
 from dexrepro.storage import read_json, read_text, read_yaml
 
 LARGEST = 1 << 28  # bytes of a series when it is unpacked
@@ -55,11 +57,11 @@ def check_result(folder: Path, *names: str, series: bool = False) -> Experiment:
             if not any((folder / "series").glob(f"{case}.*")):
                 raise _damaged(folder, f"no series of the case '{case}'")
         for path in sorted((folder / "series").glob("*.gz")):
-            _check_series(path)
+            check_series(path)
     return known[name]
 
 
-def _check_series(path: Path) -> None:
+def check_series(path: Path) -> None:
     try:
         with gzip.open(path) as file:
             read = 0
@@ -70,8 +72,17 @@ def _check_series(path: Path) -> None:
         raise _damaged(path, str(error)) from error
 
 
+def read_table(path: Path) -> pd.DataFrame:
+    """A table of a result. Raises InputError where it is none."""
+    try:
+        return read_frame(path)
+    except (OSError, ValueError) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"{path} cannot be used ({reason}); draw it again: dexrepro draw") from error
+
+
 def is_safe(svg: Path) -> bool:
-    """Whether a picture is only a picture: no script, no event, nothing from elsewhere."""
+    """Whether there is a picture that is only a picture: no script, no event, nothing from elsewhere."""
     try:
         text = read_text(svg)
     except (OSError, ValueError):

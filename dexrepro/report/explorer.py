@@ -1,4 +1,4 @@
-"""Recorded series for the pages: each case as a script that a page opened from disk may load when a reader asks.
+"""Recorded series and scenes for the pages: scripts that a page opened from disk may load when a reader asks.
 
 A page opened from ``file://`` may load scripts but fetch no data, so a case becomes ``SERIES["..."] = "<base64>"``: its
 columns as 32-bit floats, differences of their bit patterns, bytes of one weight together, deflated. It is exact.
@@ -7,18 +7,25 @@ columns as 32-bit floats, differences of their bit patterns, bytes of one weight
 from __future__ import annotations
 
 import base64
+import json
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
-from dexrepro.experiment import Film
+from dexrepro.config import InputError
+from dexrepro.experiment import Experiment, Film
+from dexrepro.physics.rendering import Camera
+from dexrepro.recordings import read_frame
+from dexrepro.report.animation import recorded_scene
+from dexrepro.report.damage import check_series
 
 LONGEST = 4000  # samples of a case; of a longer one every k-th is shown
 SHORTEST = 10
+FRAMES = 240  # instants of a scene
 UNITS = {  # of the channels that every arm and object of the world records
     "time": "s", "position": "rad", "velocity": "rad/s", "torque": "N m", "tip": "m", "force": "N", "sensed_force": "N",
     "length": "m",
@@ -33,10 +40,10 @@ def write(place: Path, target: Path, cases: Iterable[str], film: Film | None) ->
         path = place / "series" / f"{case}.csv.gz"
         if path.exists() and (columns := _columns(path)):
             text, samples, stride = _packed(columns)
-            script = target / f"series-{case}.js"
-            script.write_text(f"SERIES[{_quoted(f'{target.name}/{case}')}] = {_quoted(text)};\n")
+            script, key = target / f"series-{case}.js", f"{target.name}/{case}"
+            script.write_text(f"SERIES[{_quoted(key)}] = {_quoted(text)};\n", encoding="utf-8")
             found[case] = {
-                "script": f"files/{target.name}/{script.name}", "csv": f"files/{target.name}/{path.name}",
+                "key": key, "script": f"files/{target.name}/{script.name}", "csv": f"files/{target.name}/{path.name}",
                 "channels": list(columns), "samples": samples, "stride": stride,
             }  # fmt: skip
     if not found:
@@ -44,6 +51,43 @@ def write(place: Path, target: Path, cases: Iterable[str], film: Film | None) ->
     names = list(dict.fromkeys(_name(column) for case in found.values() for column in case["channels"]))[1:]
     channels = [{"name": name, "unit": unit(name, film)} for name in names]
     return {"name": target.name, "cases": found, "channels": channels, "first": _first(names, list(found), film)}
+
+
+def beside(series: dict[str, Any], book: Mapping[str, Any]) -> None:
+    """Add the cases of the book's run to those of another one, and show those of the same name together."""
+    ours = list(series["cases"])
+    series["cases"] |= {f"book: {case}": entry for case, entry in book["cases"].items()}
+    shown = [case for case in ours if case in book["cases"]][:2] or ours[:2]
+    series["first"]["cases"] = [name for case in shown for name in (case, f"book: {case}") if name in series["cases"]]
+
+
+def scene(place: Path, target: Path, experiment: Experiment) -> dict[str, Any] | None:
+    """Write ``target/scene.js``, the recorded motion of a scene's solids; returns its case and script, or None."""
+    if not experiment.function("scene"):
+        return None
+    try:
+        config, recording, case = recorded_scene(place, experiment)
+    except InputError:  # nothing moves, or the configuration names code that is not ours
+        return None
+    film = experiment.film
+    camera = film.camera if film else Camera()
+    with experiment.simulation.scene(config) as world:
+        if stage := experiment.function("stage"):
+            recording = stage(world, recording, config)
+        start, end = (film.span if film and film.case == case else None) or (recording.time[0], recording.time[-1])
+        shown = recording.time[recording.between(start, end)]
+        times = shown[np.unique(np.linspace(0, len(shown) - 1, FRAMES).round().astype(int))]
+        seen, poses = world.animate(recording, times)
+    columns = {"time": times.astype(np.float32)}
+    columns |= {str(i): column for i, column in enumerate(poses.reshape(len(times), -1).T.astype(np.float32))}
+    text, samples, _ = _packed(columns)
+    entry = {
+        "case": case, "samples": samples, "poses": text, "camera": asdict(camera),
+        "solids": [{"kind": item.kind, "size": item.size, "colour": item.colour} for item in seen],
+    }  # fmt: skip
+    script = target / "scene.js"
+    script.write_text(f"SCENES[{_quoted(target.name)}] = {json.dumps(entry)};\n", encoding="utf-8")
+    return {"case": case, "script": f"files/{target.name}/{script.name}"}
 
 
 def unit(channel: str, film: Film | None = None) -> str:
@@ -57,17 +101,20 @@ def unit(channel: str, film: Film | None = None) -> str:
 def _first(names: list[str], cases: list[str], film: Film | None) -> dict[str, list[str]]:
     """What is shown before the reader chooses: the channel of the film, or errors and forces, of at most four cases."""
     wanted = [film.channel] if film and film.channel in names else []
-    telling = ("error", "force", "distance", "rcm_distance", "lyapunov", "stiffness", "reference")
-    wanted += [name for word in telling for name in names if name.rpartition(".")[2] == word and name not in wanted]
+    own = [name for name in names if name.rpartition(".")[0] not in ARMS[:-1]]
+    telling = ("error", "force", "distance", "rcm_distance", "estimate", "lyapunov", "stiffness", "reference")
+    wanted += [name for word in telling for name in own if name.rpartition(".")[2] == word]
+    wanted = list(dict.fromkeys([*wanted, *own, *names]))
     shown = cases[:4]
     if film and film.case in cases and film.case not in shown:
         shown = [film.case, *shown[:3]]
-    return {"channels": (wanted or names)[:2], "cases": shown}
+    return {"channels": wanted[:2], "cases": shown}
 
 
 def _columns(path: Path) -> dict[str, Any]:
     """Numeric columns by name, time first; {} for what is no series in time."""
-    frame = pd.read_csv(path).select_dtypes("number")
+    check_series(path)
+    frame = read_frame(path).select_dtypes("number")
     if len(frame) < SHORTEST or frame.columns[0] != "time" or not frame["time"].is_monotonic_increasing:
         return {}
     return {str(name): frame[name].to_numpy(np.float32) for name in frame}

@@ -12,7 +12,7 @@ from typing import Any
 import jinja2
 
 from dexrepro import __version__, chapters, study
-from dexrepro.report import equations, symbols, verdicts, words
+from dexrepro.report import equations, explorer, studies, symbols, verdicts, words
 from dexrepro.report.contents import Contents, in_book_order
 from dexrepro.report.damage import check_result
 from dexrepro.report.sources import Sources
@@ -56,8 +56,10 @@ class _Report:
         self.code = Sources(folder)
 
     def write(self) -> None:
-        studies, runs = {item["experiment"]: item for item in study.stored(self.results)}, self._own_runs()
-        book = [Contents(n, self.results, self.folder, self.code, studies).page(runs) for n in chapters.numbers()]
+        stored, runs = study.stored(self.results), self._own_runs()
+        known = {item["experiment"]: {**item, "draws": studies.samples(item, self.results)} for item in stored}
+        places = {number: _results(self.results / f"chapter{number}") for number in chapters.numbers()}
+        book = [Contents(n, found, self.folder, self.code, known).page(runs) for n, found in places.items()]
         book = [chapter for chapter in book if chapter["experiments"]]
         claims = [claim for chapter in book for claim in chapter["claims"]]
         index = self._equations(book)
@@ -68,6 +70,8 @@ class _Report:
         self._page("index", here="index", **common, strips=[_strip(chapter) for chapter in book])
         for chapter in book:
             self._page(f"chapter{chapter['number']}", "chapter", here=chapter["number"], chapter=chapter, **common)
+        for run in runs:
+            self._page_of_run(run, common)
         self._page("claims", here="claims", **common)
         self._page("errata", here="errata", **common)
         self._page("verdicts", here="verdicts", examples=verdicts.examples(claims), **common)
@@ -78,7 +82,7 @@ class _Report:
 
     def _page(self, name: str, template: str | None = None, **values: Any) -> None:
         text = self.templates.get_template(f"{template or name}.html").render(**values)
-        (self.folder / f"{name}.html").write_text(text)
+        (self.folder / f"{name}.html").write_text(text, encoding="utf-8")
 
     def _write_sources(self, revision: str) -> None:
         (self.folder / "source").mkdir()
@@ -89,13 +93,11 @@ class _Report:
         for path in (HERE / "templates").glob("*.[cj]s*"):
             shutil.copyfile(path, self.folder / path.name)
         shutil.copytree(HERE / "vendor", self.folder / "vendor")
-        series = [experiment["series"] for chapter in book for experiment in chapter["experiments"]]
-        for item in filter(None, series):
-            (self.folder / "files" / item["name"] / "series.js").write_text(
-                _script(f"RECORDED[{json.dumps(item['name'])}]", item)
-            )
+        for chapter in book:
+            for experiment in chapter["experiments"]:
+                self._write_series(experiment["series"])
         self._index_search(book)
-        (self.folder / "search-index.js").write_text(_script("window.SEARCH_INDEX", self.search))
+        (self.folder / "search-index.js").write_text(words.script("window.SEARCH_INDEX", self.search), encoding="utf-8")
 
     # ------------------------------------------------------------------------------------------------------ the search
 
@@ -166,10 +168,34 @@ class _Report:
         for path in sorted(self.results.glob("runs/*/run.json")):
             check_result(path.parent)
             run = read_json(path)
-            runs.append(
-                {"name": path.parent.name, "chapter": run["chapter"], "differs": "; ".join(run["differs"][:12])}
-            )
+            runs.append({
+                "name": path.parent.name, "chapter": run["chapter"], "experiment": run["experiment"],
+                "differs": "; ".join(run["differs"][:12]), "page": f"run-{path.parent.name}.html",
+                "folder": path.parent,
+            })  # fmt: skip
         return runs
+
+    def _page_of_run(self, run: dict[str, Any], common: Mapping[str, Any]) -> None:
+        """A run with other parameters beside the book's: its claims, and its series with those of the book."""
+        contents = Contents(run["chapter"], {run["experiment"]: run["folder"]}, self.folder, self.code, {}).page([])
+        (experiment,) = contents["experiments"]
+        shown = {entry["name"]: entry for chapter in common["chapters"] for entry in chapter["experiments"]}
+        if book := shown.get(run["experiment"]):
+            old = {claim["id"]: claim for claim in book["claims"]}
+            pairs = [(old[claim["id"]], claim) for claim in experiment["claims"] if claim["id"] in old]
+            changed = [
+                pair for pair in pairs if len({(c["verdict"], words.short_number(c["margin"])) for c in pair}) > 1
+            ]
+            run["changes"] = sorted(changed, key=lambda pair: pair[0]["verdict"] == pair[1]["verdict"])
+            if experiment["series"] and book["series"]:
+                explorer.beside(experiment["series"], book["series"])
+        self._write_series(experiment["series"])
+        self._page(run["page"].removesuffix(".html"), "run", here=run["chapter"], chapter=contents, run=run, **common)
+
+    def _write_series(self, item: Mapping[str, Any] | None) -> None:
+        if item:
+            text = words.script(f"RECORDED[{json.dumps(item['name'])}]", item)
+            (self.folder / "files" / item["name"] / "series.js").write_text(text, encoding="utf-8")
 
     def _provenance(self, book: Book) -> str:
         runs = [experiment["run"] for chapter in book for experiment in chapter["experiments"]]
@@ -181,11 +207,11 @@ class _Report:
         )
 
 
+def _results(chapter: Path) -> dict[str, Path]:
+    """Results of a chapter by experiment."""
+    return {path.parent.name: path.parent for path in chapter.glob("*/run.json")}
+
+
 def _strip(chapter: Mapping[str, Any]) -> dict[str, Any]:
     figures = [figure for experiment in chapter["experiments"] for figure in experiment["figures"]]
     return {"number": chapter["number"], "title": chapter["title"], "figures": in_book_order(figures)}
-
-
-def _script(name: str, data: Any) -> str:
-    """Data as a script that a page opened from disk may load."""
-    return f"{name} = {json.dumps(data, separators=(',', ':')).replace('<', chr(92) + 'u003c')};\n"

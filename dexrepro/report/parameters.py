@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from typing import Any
 
-from dexrepro.config import Provenance, resolved_block
+from dexrepro.config import Provenance, origin_of, resolved_block
 from dexrepro.report import symbols
 
 
-def table(experiment: str, composed: Mapping[str, Any], origins: Mapping[str, Provenance]) -> list[dict[str, Any]]:
-    """Every parameter of an experiment; ``home`` is the key whose comment names the symbol, None without a symbol."""
+def table(
+    experiment: str, composed: Mapping[str, Any], origins: Mapping[str, Provenance], run: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """Every parameter of an experiment with its value in the run; ``home`` is the key whose comment names the symbol.
+
+    ``home`` is None without a symbol; ``run`` is the configuration that was run, which may be another than the present.
+    """
     rows = []
-    for key, value in _flat(resolved_block(composed, experiment), experiment):
-        origin, home = _origin(key, composed, origins)
+    used = {key: value for key, value in run.items() if key != "cases"}
+    for key, value in _flat(used or resolved_block(composed, experiment), experiment):
+        origin, home = origin_of(key, composed, origins)
         rows.append({"key": key, "value": value, "home": home, **_shown(origin)})
     return rows
 
@@ -42,26 +47,6 @@ def _shown(origin: Provenance | None) -> dict[str, Any]:
     plain = origin.symbol or ""
     return {"symbol": symbols.html(plain), "plain": plain, "unit": origin.unit, "kind": origin.kind,
             "text": origin.text, "range": bounds}  # fmt: skip
-
-
-def _origin(
-    key: str, composed: Mapping[str, Any], origins: Mapping[str, Provenance]
-) -> tuple[Provenance | None, str | None]:
-    """A parameter's own comment, completed by that of the parameter or block it refers to; and the symbol's home."""
-    parts = key.split(".")
-    nearest = next((".".join(parts[:n]) for n in range(len(parts), 1, -1) if ".".join(parts[:n]) in origins), None)
-    own = origins[nearest] if nearest else None
-    if own and own.symbol:
-        return own, nearest
-    node: Any = composed
-    for depth, part in enumerate(parts, 1):
-        node = node.get(part) if isinstance(node, Mapping) else None
-        if isinstance(node, str) and node.startswith("${") and node.endswith("}"):
-            further, home = _origin(".".join([node[2:-1], *parts[depth:]]), composed, origins)
-            if own and further:
-                return replace(own, symbol=further.symbol), home
-            return own or further, home
-    return own, None
 
 
 def _get(node: Any, dotted: str) -> Any:

@@ -39,6 +39,6 @@ class Sources:
     def pages(self) -> list[dict[str, Any]]:
         """What the template needs for each file: target, label and lines."""
         return [
-            {"target": f"source/{name}.html", "label": label(path), "lines": path.read_text().splitlines()}
+            {"target": f"source/{name}.html", "label": label(path), "lines": path.read_text("utf-8").splitlines()}
             for path, name in sorted(self.wanted.items())
         ]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,7 @@ from matplotlib.axes import Axes
 
 from dexrepro import chapters
 from dexrepro.report import style, verdicts
+from dexrepro.study import summary_file
 
 ROW = 0.2  # inch a claim
 EDGES = (0.62, 0.42)  # inch above and below the rows
@@ -67,6 +70,17 @@ def save(study: Mapping[str, Any], path: Path) -> Path:
         figure.savefig(path, metadata={"Date": None, "Creator": "dexrepro"})
     style.plt.close(figure)
     return path
+
+
+def samples(study: Mapping[str, Any], results: Path) -> list[dict[str, Any]]:
+    """The samples behind a stored summary, {index, values, margins}; none where those at hand are not the same many."""
+    for shipped in (False, True):
+        path = summary_file(study["experiment"], results, shipped).with_suffix(".jsonl")
+        lines = path.read_text("utf-8").splitlines() if path.exists() else []
+        if lines and len(lines) == study["samples"]:
+            with suppress(ValueError):  # a line may have been cut short
+                return [{key: json.loads(line)[key] for key in ("index", "values", "margins")} for line in lines]
+    return []
 
 
 def _share(axes: Axes, place: int, row: Mapping[str, Any], look: Mapping[str, Any]) -> None:

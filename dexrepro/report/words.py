@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from typing import Any
 
@@ -51,3 +52,8 @@ def short_number(value: float | None) -> str:
 def percent(value: float) -> str:
     """A share as a whole percentage; 100 % is kept for all."""
     return f"{100 * value:.0f} %" if value == 1 else f"{min(100 * value, 99.4):.0f} %"
+
+
+def script(name: str, data: Any) -> str:
+    """Data as a script that a page opened from disk may load."""
+    return f"{name} = {json.dumps(data, separators=(',', ':')).replace('<', chr(92) + 'u003c')};\n"

@@ -34,7 +34,11 @@ class Pixels:
 def rectangles(path: Path) -> list[Array]:
     """Rectangles (4, 2) of corners (column, row) in a cpos or cneg file; those with undefined corners are left out."""
     corners = np.array(
-        [[float(word) for word in line.split()[:2]] for line in path.read_text().splitlines() if line.strip()]
+        [
+            [float(word) for word in line.split()[:2]]
+            for line in path.read_text(encoding="utf-8").splitlines()
+            if line.strip()
+        ]
     )
     groups = corners[: len(corners) // 4 * 4].reshape(-1, 4, 2)
     return [group for group in groups if np.isfinite(group).all()]
@@ -50,7 +54,7 @@ def grasp_of(corners: Array, heights: Array) -> Grasp:
 
 def heights_of(path: Path) -> Array:
     """Minus the depth (480, 640) of a point cloud in PCD text; pixels without a point take the median."""
-    lines = path.read_text().splitlines()
+    lines = path.read_text(encoding="utf-8").splitlines()
     start = next(i for i, line in enumerate(lines) if line.startswith("DATA")) + 1
     points = np.array([[float(word) for word in line.split()] for line in lines[start:] if line.strip()])
     result = np.full(ROWS * COLUMNS, float(np.median(points[:, 2])))

@@ -7,10 +7,8 @@ import pytest
 
 from dexrepro.case import generator, live
 from dexrepro.chapters.chapter1.dartboard import experiment as dartboard
-from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.force_tracking import experiment as force_tracking
 from dexrepro.chapters.chapter1.hand_over import experiment as hand_over
-from dexrepro.chapters.chapter1.hold_and_move import experiment as hold_and_move
 from dexrepro.chapters.chapter1.hold_path import hold_path
 from dexrepro.chapters.chapter1.line import carry, press
 from dexrepro.chapters.chapter1.lyapunov import experiment as lyapunov
@@ -19,9 +17,6 @@ from dexrepro.chapters.chapter1.two_nuts import experiment as two_nuts
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.holding import AutoregressiveHolding, FixedDistance
 from dexrepro.physics.soft_object import Cushion
-from dexrepro.physics.world import World
-from dexrepro.robots.baxter import baxter, posture
-from dexrepro.robots.inverse_kinematics import nearest
 
 
 @cache
@@ -58,22 +53,6 @@ def test_printed_sign_of_the_inverse_kinematics_runs_away():
     recording = force_tracking.simulate(config, rng("force_tracking"))
     assert recording.simulated < 1.0
     assert "diverged" in recording.status or "workspace" in recording.status
-
-
-def test_an_arm_follows_a_pose_and_carries_a_known_force():
-    arm = baxter("left")
-    place, rotation = np.array([0.62, 0.25, 0.3]), hold_and_move.LEVEL @ hold_and_move.FLIP
-    start = nearest(arm, posture("left"), place, rotation)
-    with World(step=2e-3) as world:
-        world.add_arm("arm", arm, start)
-        follower = Follower(arm, start, dt=0.01, gain=20.0, singular=0.02, posture=0.2, bandwidth=40.0, mass_error=0.0)
-        follower.reset(start)
-        target = lambda t: place + [0.05 * np.sin(2 * t), 0.0, 0.03 * np.sin(3 * t)]  # noqa: E731
-        run = world.run(
-            2.0, {"arm": lambda sense: follower.go(sense, target(sense.time), rotation)}, control_period=0.01
-        )
-    wanted = np.array([target(t) for t in run.time])
-    assert np.linalg.norm(run["arm.tip"] - wanted, axis=1)[250:].max() < 2e-3
 
 
 def test_the_path_turns_about_the_middle_of_the_held_object():

@@ -55,7 +55,7 @@ def test_follower_commands_depend_on_its_own_measurements_alone(name: str) -> No
     replayed = planar_pair.Follower(other, other.laws[other.controller])
     for time, angles, rates, felt, command in log:
         sense = SimpleNamespace(time=time, angles=angles, rates=rates, felt=felt)
-        assert replayed(sense) == command
+        assert list(replayed(sense)) == command
 
 
 def test_lateral_offset_closes_with_the_predicted_time_constant() -> None:

@@ -11,8 +11,11 @@ from dexrepro import chapters
 from dexrepro.case import generator, live
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import Command, Measured, check, report
-from dexrepro.control.motion import Motion
+from dexrepro.control.motion import Motion, rest
+from dexrepro.physics.drive import JointDrive, Limited
+from dexrepro.physics.loop import LawFailed
 from dexrepro.physics.world import World
+from dexrepro.robots.planar import planar
 
 
 class Told:
@@ -137,6 +140,20 @@ def test_a_law_of_another_kind_is_refused_with_one_sentence() -> None:
         check(Holding(), "joint")
     with pytest.raises(ValueError, match="object is no law: its class must declare kind = 'holding'"):
         check(object(), "holding")
+
+
+class Broken(Joint):
+    """Divides by zero."""
+
+    def __call__(self, measured: Measured[Any], desired: Motion[Any]) -> Command:
+        raise ZeroDivisionError("float division by zero")
+
+
+def test_what_fails_is_the_law_and_not_its_adapter() -> None:
+    with World() as world:
+        world.add_arm("arm", planar([0.4, 0.3], [1.0, 0.8]), [0.1, 0.2])
+        with pytest.raises(LawFailed, match=r"the law Broken of arm 'arm' failed at 0 s: ZeroDivisionError"):
+            world.run(0.01, {"arm": Limited(JointDrive(Broken(), rest([0.0, 0.0])), 1.0)})
 
 
 def test_a_law_that_reports_nothing_has_no_channels() -> None:

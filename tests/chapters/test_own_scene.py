@@ -10,7 +10,7 @@ import pytest
 
 from dexrepro.case import live
 from dexrepro.chapters.own.scene import experiment as scene
-from dexrepro.cli import run_overrides
+from dexrepro.cli import main, run_overrides
 from dexrepro.config import InputError, compose_chapter, experiment_cases
 from dexrepro.control.contract import Command
 from dexrepro.experiment import Recording
@@ -189,3 +189,20 @@ def test_a_doubtful_file_is_said_once_and_kept_with_the_result(
         text = " ".join(capsys.readouterr().err.split())
         assert text.startswith("warning: URDF file 'tiny.urdf': link upper by 1.2 %: no rigid body has this inertia")
         assert text.count("warning") == 1
+
+
+def test_folders_and_files_have_the_names_that_people_give_them(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = folder / "Öl & Büro (neu), O'Neill" / "scene"
+    own.mkdir(parents=True)
+    monkeypatch.setenv("HOME", str(folder))
+    (folder / "trial[1] größe=2.csv").write_text("".join(f"{0.1 * k},{0.5 + 0.01 * k},0.1,0\n" for k in range(10)))
+    law = "{_target_: dexrepro.control.joint_pd.JointPD, stiffness: 300, damping: 20}"
+    text = f"name: own\narm: {TINY}\nstart: [-0.5, 1.0]\nduration: 0.05\nlaw: {law}\n"
+    (own / "letter (1).v2.yaml").write_text(text, "utf-8")
+    words = ["--config-dir", str(own.parent), "+scene=letter (1).v2", "scene.leader.csv=trial[1] größe=2.csv"]
+    assert main(["run", *words, "results=~/run (2)/größe", "workers=1"]) == 0, capsys.readouterr().err
+    assert len([*folder.glob("run (2)/größe/runs/own-*/metrics.json")]) == 1
+    assert main(["run", "-m", *words, "results=~/run (3), größe", "seed=0,1", "workers=1"]) == 0
+    assert len([*folder.glob("run (3), größe/runs/own-*/metrics.json")]) == 2

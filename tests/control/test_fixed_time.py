@@ -33,7 +33,8 @@ def law(**options):
 
 def test_torque_minus_damping_times_velocity_is_the_printed_law():
     e1, dq, desired = np.array([0.1, -0.2]), np.array([0.5, 0.3]), np.array([0.0, 0.1])
-    torque, damping, _ = law()(at(e1, 0.0, dq), Motion(np.zeros(2), desired, np.zeros(2)))
+    place = np.array([0.7, -0.4])
+    torque, damping, _ = law()(at(place + e1, 0.0, dq), Motion(place, desired, np.zeros(2)))
     x2d = -30 * e1 - 2 * signed_power(e1, 0.5) - 2 * signed_power(e1, 2.0) + desired
     e2 = dq - x2d
     expected = -e1 - 20 * e2 - 1.5 * signed_power(e2, 0.5) - 1.5 * signed_power(e2, 2.0)
@@ -96,3 +97,12 @@ def test_printed_bound_is_shorter_than_the_corrected_one_on_the_arm():
     options = dict(inertia=4.35, joints=7)
     assert settling_bound(FIRST, SECOND, POWERS, **options) == pytest.approx(20.8, abs=0.1)
     assert settling_bound(FIRST, SECOND, POWERS, printed=True, **options) == pytest.approx(9.0, abs=0.1)
+
+
+def test_the_rate_of_the_virtual_velocity_is_a_filtered_difference():
+    """Backward Euler of T r' = dx_2d/dt - r: after one period the share dt / (T + dt) of the difference."""
+    controller, rest = law(smoothing=0.004), np.zeros(2)
+    controller(at(np.array([0.1, -0.2]), 0.0, rest), Motion(rest, rest, rest))
+    before = controller.virtual
+    controller(at(np.array([0.2, -0.1]), 0.0, rest), Motion(rest, rest, rest))
+    assert controller.rate == pytest.approx((controller.virtual - before) / 1e-3 * 1e-3 / (0.004 + 1e-3))

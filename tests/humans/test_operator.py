@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from dexrepro.control.pose_transformation import ConstantScaling, SpeedScaling
-from dexrepro.humans.operator import Hand, Operator, Tremor, minimum_jerk
+from dexrepro.humans.operator import Hand, Operator, Tremor, strides
 
 STEADY = Operator(
     along=0.0, across=0.0, scatter=0.0, tremor=0.0, vision=0.0, tolerance=1e-3, patience=5.0, reaction=0.2
@@ -15,7 +15,7 @@ def hand(operator=STEADY, scaling=None, seed=0):
 
 
 def test_minimum_jerk_ends_at_rest():
-    path = minimum_jerk(1000)
+    path = strides(1000)
     assert path[-1] == pytest.approx(1.0)
     assert path[499] == pytest.approx(0.5)
     assert max(path[0], 1 - path[-2]) < 1e-8

@@ -3,18 +3,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dexrepro.humans.reaching import Obstacle, Reach, Reacher, bump, minimum_jerk
+from dexrepro.control.motion import minimum_jerk
+from dexrepro.humans.reaching import Obstacle, Reach, Reacher, bump
 
 REACH = Reach((2.3, 0.0), (20.0, 9.0))
 FAR = Obstacle((13.0, 5.0), 8.0)
-
-
-def test_minimum_jerk_starts_and_ends_at_rest():
-    u = np.linspace(0, 1, 1001)
-    speed = np.gradient(minimum_jerk(u), u)
-    assert minimum_jerk([0.0, 1.0]) == pytest.approx([0.0, 1.0])
-    assert speed[[0, -1]] == pytest.approx(0.0, abs=1e-4)
-    assert speed.max() == pytest.approx(1.875, rel=1e-4)
 
 
 @given(st.floats(0.1, 0.9), st.floats(2.0, 20.0))

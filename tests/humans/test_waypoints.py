@@ -2,18 +2,10 @@ import numpy as np
 import pytest
 
 from dexrepro.humans.segmentation import change_point, slowest_point
-from dexrepro.humans.waypoints import average, draw, minimum_jerk, stroke
+from dexrepro.humans.waypoints import average, draw, stroke
 
 DOWN = [(0, 10), (0.5, 5), (0, 0)]
 ACROSS = [(0, 0), (5, 0.5), (10, 0)]
-
-
-def test_minimum_jerk_starts_and_ends_at_rest():
-    u = np.linspace(0, 1, 1001)
-    speed = np.gradient(minimum_jerk(u), u)
-    assert minimum_jerk([-1.0, 0.0, 0.5, 1.0, 2.0]) == pytest.approx([0, 0, 0.5, 1, 1])
-    assert speed[[0, -1]] == pytest.approx(0, abs=1e-4)
-    assert speed.max() == pytest.approx(1.875, rel=1e-4)
 
 
 def test_stroke_passes_its_way_points():

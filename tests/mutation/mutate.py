@@ -164,7 +164,11 @@ def main() -> int:
     import numpy  # noqa: F401
 
     hypothesis.settings.register_profile(
-        "mutation", database=None, deadline=None, phases=[hypothesis.Phase.explicit, hypothesis.Phase.generate]
+        "mutation",
+        database=None,
+        deadline=None,
+        derandomize=True,
+        phases=[hypothesis.Phase.explicit, hypothesis.Phase.generate],
     )
     hypothesis.settings.load_profile("mutation")
     os.chdir(ROOT)
@@ -196,7 +200,8 @@ def survey(path: Path, relative: Path, share: float, accepted: list[str]) -> tup
     for tests in (near, far):
         start = time.perf_counter()
         if not passes(name, path, None, tests, 600.0):
-            raise SystemExit(f"the tests of {relative} fail without any change: {', '.join(t.name for t in tests)}")
+            print(f"{relative}: left out, failing as it is: {', '.join(t.name for t in tests)}", flush=True)
+            tests.clear()
         times.append(3 * (time.perf_counter() - start) + 5)
     killed = 0
     for line, text, code in chosen:

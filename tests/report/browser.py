@@ -14,7 +14,10 @@ from typing import Any
 
 PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 AXE = "4.14.1"
-FLAGS = "--headless=new --no-sandbox --disable-gpu --no-first-run --disable-sync --disable-background-networking"
+FLAGS = (
+    "--headless=new --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader --no-first-run --disable-sync"
+    " --disable-background-networking"
+)
 
 
 class Browser:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import base64
+import json
 import os
 import sys
 import types
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +21,7 @@ from dexrepro.experiment import Experiment, Film, Recording
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
 from dexrepro.recordings import save_recording
-from dexrepro.report import animation
+from dexrepro.report import animation, explorer
 from dexrepro.robots.planar import planar
 from dexrepro.storage import write_json
 
@@ -111,3 +114,19 @@ def test_a_result_that_names_foreign_code_is_not_rendered(swing: tuple[Path, Exp
     config["cases"]["turn"]["mine"] = {"_target_": "fractions.Fraction"}
     (swing[0] / "config.yaml").write_text(yaml.safe_dump(config))
     assert animation.render(swing[0], allow=["fractions"]).exists()
+
+
+def test_a_scene_is_exported_as_the_engine_poses_it(swing: tuple[Path, Experiment], tmp_path: Path) -> None:
+    folder, experiment = swing
+    shown = explorer.scene(folder, tmp_path, experiment)
+    assert shown["case"] == "turn"
+    entry = json.loads((tmp_path / "scene.js").read_text().partition(" = ")[2].rstrip(";\n"))
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(entry["poses"])), np.uint8)
+    changes = np.ascontiguousarray(planes.reshape(-1, 4, entry["samples"]).transpose(0, 2, 1)).view("<i4")[..., 0]
+    columns = np.cumsum(changes, axis=1, dtype=np.int32).view(np.float32)
+    times, poses = columns[0], columns[1:].reshape(-1, 7, entry["samples"])
+    assert times[0] >= 0.5, "the span of the film"
+    assert len(entry["solids"]) == len(poses)
+    angles = times * np.pi / 4
+    middle = 0.25 * np.array([np.cos(angles), np.sin(angles), 0 * angles])
+    np.testing.assert_allclose(poses[0, :3], middle, atol=1e-5)

@@ -6,10 +6,12 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from browser import PROGRAM, Browser, axe
 
-from dexrepro.storage import load_recording
+from dexrepro.recordings import load_recording
+from dexrepro.report.explorer import _packed
 
 pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
 PAGES = ("index", "chapter90", "claims", "errata", "equations", "symbols", "verdicts")
@@ -118,6 +120,67 @@ def test_cases_and_channels_are_switched(explorer: Browser) -> None:
     explorer.wait(f"{lines} == {before - 1}")
     explorer.js("document.querySelector('.choices input[value=pair]').click()")
     explorer.wait("document.querySelectorAll('.panel').length == 1")
+
+
+def test_a_run_with_other_parameters_is_shown_beside_the_books(browser: Browser, report: Path) -> None:
+    (page,) = report.glob("run-decay-*.html")
+    browser.open(page, "#explore-decay")
+    browser.wait("document.querySelectorAll('.panel .u-over').length == 2")
+    assert "start=0.5 (book: 1.0)" in browser.js("document.querySelector('.lead').textContent")
+    rows = browser.js("[...document.querySelectorAll('.changes tbody tr')].map((row) => row.innerText)")
+    assert len(rows) == 1
+    assert "not reproduced" in rows[0], "what grew in the book's run does not in this one"
+    browser.js("document.querySelector('.panel .uplot').focus()")
+    browser.key("ArrowRight")
+    assert shown(browser, "plain") == pytest.approx(shown(browser, "book: plain") / 2, rel=1e-3)
+
+
+def test_every_draw_of_a_study_can_be_pointed_at_and_run_again(browser: Browser, report: Path) -> None:
+    browser.open(report / "chapter90.html", "#study-decay")
+    browser.wait("document.querySelectorAll('.whatif circle, .whatif .fails').length == 8")
+    browser.js("document.querySelector('.whatif svg').focus()")
+    browser.key("ArrowRight")
+    told = "document.querySelector('.whatif [aria-live]').innerText"
+    first = browser.js(told)
+    lines = Path("results/studies/decay.jsonl").read_text().splitlines()
+    draws = sorted((json.loads(line) for line in lines), key=lambda draw: draw["values"]["decay.start"])
+    assert f"Draw {draws[0]['index']}:" in first
+    assert f"dexrepro run chapter=90 only=decay decay.start={draws[0]['values']['decay.start']}" in first
+    browser.key("ArrowRight")
+    assert f"Draw {draws[1]['index']}:" in browser.js(told)
+
+
+def test_a_scene_moves_stops_and_shares_its_time_with_the_series(explorer: Browser) -> None:
+    columns = {
+        name: np.linspace(0, 2, 21, dtype=np.float32) * (name in ("time", "x"))
+        for name in ["time", "x", "y", "z", "a", "b", "c", "w"]
+    }
+    columns["w"] += 1
+    poses, samples, _ = _packed(columns)
+    camera = {"target": [0, 0, 0], "distance": 3, "yaw": 0, "pitch": -30, "field_of_view": 50}
+    solid = {"kind": "capsule", "size": [0.1, 0.5], "colour": [1, 0, 0, 1]}
+    scene = {"case": "plain", "samples": samples, "poses": poses, "camera": camera, "solids": [solid]}
+    explorer.js(
+        "(async () => { await load('vendor/three/three.iife.min.js'); await load('scene.js'); window.told = [];"
+        " window.host = { place: document.querySelector('.panels > .scene'), onTime: (f) => { window.hover = f },"
+        f" setTime: (t) => told.push(t) }}; await showScene(host, {json.dumps(scene)}); }})()"
+    )
+    instant = "Number(document.querySelector('canvas:focus-within, .scene canvas').dataset.time)"
+    assert explorer.js(instant) == 0
+    explorer.js("[...document.querySelectorAll('.scene button')].at(-1).click()")
+    explorer.wait(f"{instant} > 0.1")
+    explorer.js("[...document.querySelectorAll('.scene button')].at(-1).click()")
+    stopped = explorer.js(instant)
+    assert explorer.js("told.at(-1)") == pytest.approx(stopped)
+    explorer.js("new Promise((done) => setTimeout(done, 200))")
+    assert explorer.js(instant) == stopped
+    explorer.js("hover(1.25)")
+    assert explorer.js(instant) == pytest.approx(1.25)
+    before = explorer.js("document.querySelector('.scene canvas').toDataURL()")
+    explorer.js("document.querySelector('.scene canvas').focus()")
+    explorer.key("ArrowLeft")
+    assert explorer.js(instant) == pytest.approx(1.25), "the arrow keys turn the scene, they do not move the time"
+    assert before.startswith("data:image/png")
 
 
 def test_the_search_knows_verdicts_equations_and_says_when_it_cut(browser: Browser, report: Path) -> None:

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from dexrepro.experiment import Film, Recording
+from dexrepro.recordings import save_recording
 from dexrepro.report import explorer
-from dexrepro.storage import save_recording
 
 
 def unpacked(script: str, columns: int) -> np.ndarray:

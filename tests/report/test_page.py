@@ -101,3 +101,10 @@ def test_cells_are_words_and_numbers_that_read_well() -> None:
 def test_a_column_of_phrases_is_given_width() -> None:
     columns = [pd.Series([1.0, 2.0]), pd.Series(["a", "b"]), pd.Series(["a", "a phrase that would be broken up"])]
     assert [words.column_kind(column) for column in columns] == ["number", "", "words"]
+
+
+def test_what_was_not_run_is_named_with_what_it_needs(report: Path) -> None:
+    for name in ("index.html", "chapter90.html"):
+        text = " ".join((report / name).read_text("utf-8").split())
+        assert "<code>dexrepro run chapter=90 only=needs_more</code> (needs no_such_package: pip install" in text
+        assert "only=decay</code>" not in text.partition('class="note absent">')[2].partition("</p>")[0]

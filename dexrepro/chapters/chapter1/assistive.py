@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
-from dexrepro.chapters.chapter1.followers import ComputedTorque, Follower
+from dexrepro.arrays import Array
 from dexrepro.control.contract import HoldingLaw
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.control.potential_field import PotentialField
 from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.plant import Sense
-
-Array = NDArray[np.float64]
+from dexrepro.physics.servo import JointServo, PoseServo
 
 
 class AssistiveFollower:
@@ -23,7 +19,7 @@ class AssistiveFollower:
     """
 
     def __init__(
-        self, follower: Follower, field: PotentialField, latch: ContactLatch, law: HoldingLaw, *, speed_limit: float
+        self, follower: PoseServo, field: PotentialField, latch: ContactLatch, law: HoldingLaw, *, speed_limit: float
     ) -> None:
         self.follower, self.field, self.latch = follower, field, latch
         self.law = HoldingDrive(law, speed_limit * follower.dt)
@@ -35,7 +31,7 @@ class AssistiveFollower:
         self.field.reset(tip)
         self.latch.reset()
 
-    def go(self, sense: Sense, partner: Array, axis: Array, measured: Array, rotation: Array) -> ComputedTorque:
+    def go(self, sense: Sense, partner: Array, axis: Array, measured: Array, rotation: Array) -> JointServo:
         """One control period: commanded pose of DFR (``partner`` [m], ``axis``), object as seen, own orientation."""
         tip = sense.tip
         self.force = max(0.0, float(sense.force @ axis))

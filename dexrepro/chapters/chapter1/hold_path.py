@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import signal
 
-from dexrepro.humans.operator import Tremor, minimum_jerk
-
-Array = NDArray[np.float64]
+from dexrepro.arrays import Array
+from dexrepro.humans.operator import Tremor, strides
 
 
 @dataclass(frozen=True)
@@ -39,7 +37,7 @@ class HoldPath:
 
 def _smooth(time: Array, start: float, duration: float) -> Array:
     """A minimum-jerk step from 0 to 1."""
-    share = minimum_jerk(1000)
+    share = strides(1000)
     return np.interp((time - start) / duration, np.linspace(0, 1, 1001), np.r_[0.0, share])
 
 

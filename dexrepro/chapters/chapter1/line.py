@@ -10,12 +10,10 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.control.contract import Measured
 from dexrepro.physics.soft_object import Cushion
-
-Array = NDArray[np.float64]
 
 
 def at(position: Any, force: Any) -> Measured[Any]:

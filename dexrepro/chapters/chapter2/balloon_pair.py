@@ -7,13 +7,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.arrays import Rng
-from dexrepro.control.computed_torque import ComputedTorque
-from dexrepro.control.contract import Measured
+from dexrepro.arrays import Array, Rng
 from dexrepro.control.holding_line import HoldingLineRegulation
-from dexrepro.control.motion import Motion
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
@@ -21,12 +17,11 @@ from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
+from dexrepro.physics.servo import JointServo
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.baxter import baxter, torso
 from dexrepro.robots.inverse_kinematics import InverseKinematics, solve
-
-Array = NDArray[np.float64]
 
 # The grippers face each other along y: columns are the gripper's axes in the torso frame.
 FACING = {
@@ -115,7 +110,7 @@ class GripperServo:
             arm, "pose", servo.ik_gain, 4 * config.step, servo.ik_damping, rest_gain=servo.rest_gain,
             kinematics=self._model,
         )  # fmt: skip
-        self._law = ComputedTorque(model=self._model, frequency=servo.frequency)
+        self._servo = JointServo(self._model, servo.frequency)
         self._sample = 0
         self._torque = [0.0] * arm.dof
 
@@ -131,14 +126,12 @@ class GripperServo:
             inverse.reset(sense.position)
             inverse.rest = sense.position
         if self.due:
-            self._reference = inverse.position
+            before = inverse.position
             inverse(target, self._rotation)
+            # A torque acts for two steps: it is that of the reference in their middle.
+            self._servo.refer(sense.time - self._step, before, inverse.velocity)
         if self._sample % 2 == 0:
-            q, rates = sense.position, inverse.velocity
-            ahead = self._reference + (self._sample % 4 + 1) * self._step * rates
-            measured = Measured(sense.time, q, sense.velocity, np.zeros(len(q)))
-            torque = self._law(measured, Motion(ahead, rates, np.zeros(len(q)))).torque
-            self._torque = (torque - self._model.tip_torque(q, sense.felt)).tolist()
+            self._torque = (self._servo(sense) - self._model.tip_torque(sense.position, sense.felt)).tolist()
         self._sample += 1
         return self._torque
 
@@ -171,7 +164,7 @@ class Follower:
     """
 
     def __init__(self, config: Config, arm: Arm) -> None:
-        self._servo, self._law = GripperServo(config, arm, FACING["left"]), HoldingDrive(config.law)
+        self._servo, self.law = GripperServo(config, arm, FACING["left"]), HoldingDrive(config.law)
         self._approach, self._threshold = config.approach_speed * config.step, config.contact_force
         self._regulations = [HoldingLineRegulation(gain=config.regulation) for _ in "xz"]
         self.reference = self._home = start(config, "follower")
@@ -188,9 +181,9 @@ class Follower:
             if math.sqrt(fx * fx + fy * fy + fz * fz) > self._threshold:
                 self.contact_time = sense.time
                 self._home[1] = sense.tip[1]
-                self._law.reset(sense.time, 0.0)
+                self.law.reset(sense.time, 0.0)
         else:
-            along = self._law(sense.time, sense.tip[1] - self._home[1], fy)
+            along = self.law(sense.time, sense.tip[1] - self._home[1], fy)
             (x, z), home = (law(force) for law, force in zip(self._regulations, (fx, fz))), self._home
             self.reference = np.array((home[0] + x, home[1] + along, home[2] + z))
         return self._servo(sense, self.reference)

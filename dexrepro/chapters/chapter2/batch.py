@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.control.contract import Measured
 from dexrepro.control.force_control import ForceControl, IntegralForceControl
 from dexrepro.control.holding_line import HoldingLineRegulation
@@ -20,7 +20,6 @@ from dexrepro.control.passive_impedance import PassiveImpedance
 from dexrepro.physics.planar_batch import PlanarPairs
 from dexrepro.robots.planar import PlanarChain
 
-Array = NDArray[np.float64]
 SPIN = 200.0  # rad/s, a joint faster than this has lost control whatever the force
 Rows = list[dict[str, Any]]
 

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from dexrepro.arrays import Array
 from dexrepro.experiment import Recording
-
-Array = NDArray[np.float64]
 
 
 def mean(values: Array) -> float | None:

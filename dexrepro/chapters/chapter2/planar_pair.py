@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from dexrepro.control.contract import Command, HoldingLaw, Measured, report
+from dexrepro.control.contract import HoldingLaw, Measured, report
 from dexrepro.control.holding_line import HoldingLineRegulation
 from dexrepro.control.motion import Motion
 from dexrepro.control.target_impedance import TargetImpedance
@@ -99,9 +99,9 @@ class ImpedanceServo:
         self.chain = PlanarChain(config.arm.lengths, config.arm.masses, base)
         self._law = TargetImpedance(model=self.chain, desired_force=config.desired_force, **config.impedance)
 
-    def __call__(self, sense: Any, target: tuple[float, float], links: Links | None = None) -> Command:
+    def __call__(self, sense: Any, target: tuple[float, float], links: Links | None = None) -> Any:
         measured = Measured(sense.time, math.nan, math.nan, sense.felt[:2], sense.angles, sense.rates)
-        return self._law(measured, Motion(target, REST, REST))
+        return self._law(measured, Motion(target, REST, REST)).torque
 
 
 class Leader:
@@ -124,7 +124,7 @@ class Follower:
 
     def __init__(self, config: Config, law: HoldingLaw) -> None:
         servo = ImpedanceServo if config.get("realisation") == "impedance" else TipServo
-        self._law, self._servo = HoldingDrive(law), servo(config, config.follower.base)
+        self.law, self._servo = HoldingDrive(law), servo(config, config.follower.base)
         printed = config.follower.get("regulation_printed", True)
         self._regulation = HoldingLineRegulation(gain=config.follower.regulation, printed=printed)
         self._low, self._high = config.follower.workspace
@@ -136,9 +136,9 @@ class Follower:
         x, y = self._servo.chain.forward(sense.angles, links)
         if self._home is None:
             self._home = x, y
-            self._law.reset(sense.time, x)
+            self.law.reset(sense.time, x)
         fx, fy, _ = sense.felt
-        along, across = self._law(sense.time, x, fx), self._home[1] + float(self._regulation(fy))
+        along, across = self.law(sense.time, x, fx), self._home[1] + float(self._regulation(fy))
         self.reference = along, across
         low, high = self._low, self._high
         return self._servo(sense, (low if along < low else high if along > high else along, across), links)

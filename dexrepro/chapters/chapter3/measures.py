@@ -7,13 +7,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.chapters.chapter3.scene import ARM, distance_to_centre, gripper_arm
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms
-
-Array = NDArray[np.float64]
 
 
 def add_distances(recording: Recording, config: Config, centres: Array) -> None:

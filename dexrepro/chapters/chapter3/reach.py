@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.chapters.chapter3.scene import ARM, ELBOW, WRIST, gripper_arm
 from dexrepro.control.contract import Command, Measured, report
 from dexrepro.control.motion import Motion, quintic
@@ -23,7 +23,6 @@ from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import joint_frames
 from dexrepro.robots.rotations import cross, rotation_matrix, tilt
 
-Array = NDArray[np.float64]
 BEYOND = 1.6  # a retreat's length over that of the insertion
 CARRIERS = (5, 6)  # number of joints that move the segments e1-w1 and w1-tip (turning w2 leaves its axis in place)
 
@@ -99,7 +98,7 @@ class Reach:
     def __init__(self, config: Config, centre: Callable[[float], Array], applied: Callable[[], Any]) -> None:
         self.arm = gripper_arm(config.gripper)
         self.model = RigidBodyModel(self.arm, mass_error=config.model.mass_error)
-        self.config, self.drive, self.observer = config, JointDrive(config.law), config.observer
+        self.config, self.law, self.observer = config, JointDrive(config.law), config.observer
         if config.adaptation == "task":  # what of e2 moves the task drives the weights
             config.law.part = self._moving
         self._centre, self._applied = centre, applied
@@ -126,7 +125,7 @@ class Reach:
             back = self._inverse if config.task == "position" else damped_inverse(jacobian, config.damping)
             joints, joint_rate = q - back @ error, back @ rate
         desired = Motion(joints, joint_rate, np.zeros(len(q)))
-        torque, damping, _ = self.drive.command(Measured(sense.time, q, dq, self.observed), desired)
+        torque, damping, _ = self.law.command(Measured(sense.time, q, dq, self.observed), desired)
         torque = torque + config.model.gravity_compensation * gravity
         if config.null_space.enabled:
             torque += projector @ self._subtask(state, centre)

@@ -7,8 +7,8 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.elements import Carried
 from dexrepro.physics.rendering import Camera
@@ -18,7 +18,6 @@ from dexrepro.robots.baxter import baxter, extension, posture, torso
 from dexrepro.robots.inverse_kinematics import solve
 from dexrepro.robots.kinematics import forward, joint_frames
 
-Array = NDArray[np.float64]
 ARM = "right"
 # Joints whose origins are corners of the arm's centreline near the opening: elbow e1 and wrist w1.
 ELBOW, WRIST = 3, 5

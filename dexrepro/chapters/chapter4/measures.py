@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array, Mask
 from dexrepro.experiment import Metrics
 from dexrepro.measures import rms_length
 
-Array = NDArray[np.float64]
 
-
-def between(time: Array, start: float, end: float) -> NDArray[np.bool_]:
+def between(time: Array, start: float, end: float) -> Mask:
     """Mask of start <= time < end [s]."""
     return (time >= start - 1e-9) & (time < end - 1e-9)
 

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Image
 from dexrepro.control.contract import Command, Law, build, report
 from dexrepro.control.motion import Sampled, via_points
 from dexrepro.experiment import Config, Recording
 from dexrepro.networks import AdaptiveNetwork
-from dexrepro.physics.drive import EndPointDrive, limited
+from dexrepro.physics.drive import EndPointDrive, Limited
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
@@ -21,7 +21,6 @@ from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter
 from dexrepro.robots.inverse_kinematics import nearest
 
-Array = NDArray[np.float64]
 TRAINING = (0, 1)  # phases I and II; phase III has the numbers 2 to 10, one a trajectory
 START_COLOUR, END_COLOUR = (0.90, 0.62, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
 VIEW = Camera(target=(0.42, -0.45, 0.15), distance=1.5, yaw=-60.0, pitch=-20.0)
@@ -66,7 +65,7 @@ class Pilot:
 
     def __init__(self, law: Law, model: RigidBodyModel, compensate: bool, reference: Sampled) -> None:
         self.law, self.drive = law, EndPointDrive(law, reference, model)
-        self.command = limited(self.drive, support=model if compensate else None)
+        self.command = Limited(self.drive, support=model if compensate else None)
 
     def __call__(self, sense: Sense) -> Command:
         return self.command(sense)
@@ -134,7 +133,7 @@ def joined(parts: list[tuple[int, Recording]], step: float) -> Recording:
     )
 
 
-def photograph(world: World, part: Recording, time: float) -> NDArray[np.uint8]:
+def photograph(world: World, part: Recording, time: float) -> Image:
     """The arm and its payload at an instant of a run."""
     k = min(int(np.searchsorted(part.time, time)), len(part.time) - 1)
     poses = {"payload": part["payload.pose"][k]} if "payload.pose" in part else {}

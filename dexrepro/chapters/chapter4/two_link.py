@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.control.contract import Law, build, memory, report
 from dexrepro.control.motion import Sampled
 from dexrepro.experiment import Config, Recording
@@ -20,7 +20,6 @@ from dexrepro.physics.world import World
 from dexrepro.robots.planar import planar
 from dexrepro.robots.two_link import TwoLink
 
-Array = NDArray[np.float64]
 SNAPSHOT = 50  # control periods between two records of the weights
 ELLIPSE, FROZEN = 4, 5  # segment numbers after the strokes 0 to 3
 

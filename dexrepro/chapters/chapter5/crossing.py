@@ -9,7 +9,6 @@ import numpy as np
 
 from dexrepro.chapters.chapter5 import letters
 from dexrepro.chapters.demonstrations import recorded
-from dexrepro.config import one_of
 from dexrepro.experiment import Config
 from dexrepro.humans.crossing import via_points
 from dexrepro.humans.handwriting import hand_path, smoothed
@@ -68,7 +67,7 @@ def learn(demonstrations: dict[int, Demonstration], config: Config, rng: np.rand
 
 def _scaling(config: Config) -> Scaling:
     """A = g - x0 along x, the length of the movement across it, where start and goal agree; or g - x0 throughout."""
-    if one_of("dmp.amplitude", config.dmp.amplitude, ("guarded", "printed")) == "printed":
+    if config.dmp.amplitude == "printed":
         return Scaling.goal(3)
     return Scaling(np.array([True, False, False]), np.full(3, 12.0))
 

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.demonstrations import recorded
-from dexrepro.config import one_of
 from dexrepro.experiment import Config
 from dexrepro.humans.handwriting import smoothed, write
 from dexrepro.primitives import DMP, Demonstration, ExtendedKernels, GaussianKernels, Scaling, SpringDamper
@@ -50,8 +49,6 @@ def system(config: Config) -> SpringDamper:
 def kernels(count: int, config: Config, rng: np.random.Generator | None) -> GaussianKernels:
     """Equally spaced kernels, or, with a generator, random centres and widths."""
     settings = config.kernels
-    if rng is not None:
-        one_of("kernels.placement", settings.placement, ("random_time", "random_phase"))
     if rng is None:
         return GaussianKernels.with_widths(np.linspace(0, 1, count), config.dmp.decay, settings.width / count)
     places, (low, high) = np.sort(rng.uniform(size=count)), settings.width_range

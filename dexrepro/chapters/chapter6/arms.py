@@ -6,17 +6,16 @@ from copy import deepcopy
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
+from dexrepro.arrays import Array
 from dexrepro.control.contract import build
 from dexrepro.control.motion import Sampled
 from dexrepro.physics.drive import JointDrive
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.inverse_kinematics import InverseKinematics
-
-Array = NDArray[Any]
 
 
 def joint_path(

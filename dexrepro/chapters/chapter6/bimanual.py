@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from dexrepro.arrays import Array
 from dexrepro.chapters.chapter6 import learning
 from dexrepro.experiment import Config
 from dexrepro.humans.skeleton import Body, DepthCamera, Occlusion, carry
 from dexrepro.primitives.constrained import Reference, Skill
 from dexrepro.primitives.dmp import DMP
 
-Array = NDArray[Any]
 SHOULDER, ELBOW, WRIST = 0, 1, 2
 
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
-from dexrepro.config import one_of
+from dexrepro.arrays import Array
 from dexrepro.experiment import Config
 from dexrepro.primitives.barrier import Constraint, Gains
 from dexrepro.primitives.constrained import LAWS, Law, Path, Reference, Skill, rollout, safety_filter
@@ -16,8 +13,6 @@ from dexrepro.primitives.demonstration import Demonstration
 from dexrepro.primitives.dmp import DMP, Trajectory
 from dexrepro.primitives.kernels import GaussianKernels
 from dexrepro.primitives.transformation import SpringDamper
-
-Array = NDArray[Any]
 
 
 def learn(time: Array, path: Array, dmp: Config) -> DMP:
@@ -67,8 +62,7 @@ def stack(references: list[Reference]) -> Reference:
 
 def law(cdmp: Config) -> Law:
     """The law that a configuration names; the filter with its rates."""
-    name = one_of("cdmp.law", cdmp.law, LAWS)
-    return safety_filter(tuple(cdmp.filter_rates)) if name == "filter" else LAWS[name]
+    return safety_filter(tuple(cdmp.filter_rates)) if cdmp.law == "filter" else LAWS[cdmp.law]
 
 
 def gains(cdmp: Config) -> Gains:
@@ -87,12 +81,12 @@ def tube(cdmp: Config, margin: float | Array) -> Constraint:
 
 def scaled(cdmp: Config) -> bool:
     """Whether the bounds are those of x^c - x, H = k_z h."""
-    return bool(one_of("cdmp.bound_scaling", cdmp.bound_scaling, ("scaled", "printed")) == "scaled")
+    return bool(cdmp.bound_scaling == "scaled")
 
 
-def weight(cdmp: Config, bound: Any) -> Any:
+def weight(cdmp: Config, bound: float | Array) -> float | Array:
     """Factor of the barrier for a bound H."""
-    return {"one": 1.0, "h2": bound**2, "off": 0.0}[one_of("cdmp.weight", cdmp.weight, ("one", "h2", "off"))]
+    return {"one": 1.0, "h2": bound**2, "off": 0.0}[cdmp.weight]
 
 
 def constrained(

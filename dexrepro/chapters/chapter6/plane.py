@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.chapters.chapter6 import learning
-from dexrepro.config import one_of
 from dexrepro.experiment import Config
 from dexrepro.humans.segmentation import change_point, slowest_point
 from dexrepro.humans.waypoints import Drawing, average, draw
@@ -18,7 +17,6 @@ from dexrepro.primitives.dmp import DMP, Trajectory
 from dexrepro.primitives.obstacles import Polygon
 from dexrepro.primitives.reference_path import arc, detour, differentiable
 
-Array = NDArray[Any]
 CUTS = {"ruptures": change_point, "slowest": slowest_point}
 
 
@@ -58,7 +56,7 @@ def _lesson(config: Config, rng: np.random.Generator) -> Lesson:
         paces = d.duration * (1 + 0.08 * rng.normal(size=2))
         drawings.append(draw(strokes, paces, rng, d.spread, d.tremor))
     drawings = [replace(w, position=w.position * (1 + config.perturbation)) for w in drawings]
-    cut = CUTS[one_of("segmentation", config.segmentation, CUTS)]
+    cut = CUTS[config.segmentation]
     cuts = [cut(drawing.time, drawing.position) for drawing in drawings]
     halves = []
     for keep in (np.less_equal, np.greater_equal):
@@ -94,7 +92,7 @@ def extended_paths(config: Config, lesson: Lesson, steps: int) -> list[Array]:
     """
     around = preferred_arc(config)
     first, second = lesson.first, lesson.second
-    if one_of("reference.intervals", config.reference.intervals, ("subskill", "local")) == "subskill":
+    if config.reference.intervals == "subskill":
         one = first.rollout(lesson.durations[0] / steps, horizon=lesson.durations[0], goal=around[0])
         two = second.rollout(lesson.durations[1] / steps, horizon=lesson.durations[1], start=around[-1])
         return [one.position, two.position]

@@ -9,10 +9,10 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
+from dexrepro.arrays import Array, Image
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.control import contract
 from dexrepro.control.motion import Sampled
@@ -27,8 +27,6 @@ from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Pose, Shape
 from dexrepro.robots.pen_arm import DARK, gripper, pen_arm, pen_arm_angles, pen_arm_tip
-
-Array = NDArray[np.float64]
 
 BOARD = (0.13, 0.21)  # m, depth and width; printed in Sect. 7.4
 ARM_BASE = (-0.09, 0.105, 0.10)  # m, from the front left corner of the board
@@ -127,7 +125,7 @@ def add_stack(world: World, obstacle: Obstacle, **contact: Any) -> None:
 
 def photographs(
     world: World, positions: dict[str, Array], cube: dict[str, Array] | None = None, camera: Camera = CAMERA
-) -> dict[str, NDArray[np.uint8]]:
+) -> dict[str, Image]:
     """Pictures, by name, with the arm at joint angles and the cube, if any, at points [m] of the robot's frame."""
     return {
         name: world.render({"arm": angles}, {"cube": cube[name]} if cube else None, camera, (420, 320))

@@ -9,12 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.humans.reaching import Obstacle, Reach
 from dexrepro.report import style
-
-Array = NDArray[np.float64]
 
 DIRECTIONS: dict[str, dict[str, Any]] = {
     "left": {"color": style.EXTRA[0], "linestyle": "-"},

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from dexrepro.arrays import Array
 from dexrepro.chapters.demonstrations import recorded
 from dexrepro.config import InputError, compose_chapter
 from dexrepro.experiment import Config
@@ -21,8 +22,6 @@ from dexrepro.networks.fuzzy import FuzzySystem
 from dexrepro.primitives import GaussianKernels, SpringDamper, phase
 from dexrepro.primitives.incremental import ExtendedKernels
 from dexrepro.primitives.reactive import Styles, path_scaling, ridge_weights
-
-Array = NDArray[np.float64]
 
 
 def generator(config: Config, purpose: str) -> np.random.Generator:

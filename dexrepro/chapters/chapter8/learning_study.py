@@ -6,13 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.control.impedance_learning import LearnedGain, exploration_windows
 from dexrepro.control.interaction_optimum import InteractionModel, optimal_gain
 from dexrepro.control.policy_iteration import NotExcited, Windows, policy_iteration
-
-Array = NDArray[np.float64]
 
 
 def iterates(gain: LearnedGain, model: InteractionModel) -> pd.DataFrame:

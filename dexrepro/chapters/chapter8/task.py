@@ -7,16 +7,14 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.control.contract import Measured
 from dexrepro.control.impedance_learning import InteractionLaw
 from dexrepro.control.motion import Motion, Path
 from dexrepro.physics.drive import EndPointDrive
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.planar import planar
-
-Array = NDArray[np.float64]
 
 
 def two_link(arm: Any) -> Arm:

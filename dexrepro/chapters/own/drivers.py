@@ -6,19 +6,17 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array
 from dexrepro.config import InputError
 from dexrepro.control.computed_torque import ComputedTorque
 from dexrepro.control.contract import KINDS, Command, Measured, build
 from dexrepro.control.holding_line import HoldingLineRegulation
-from dexrepro.control.motion import Motion, Path
+from dexrepro.control.motion import Motion, Path, rest
 from dexrepro.experiment import Config
-from dexrepro.physics.drive import EndPointDrive, HoldingDrive, JointDrive, Posture, limited
+from dexrepro.physics.drive import EndPointDrive, HoldingDrive, JointDrive, Limited, Posture
 from dexrepro.physics.plant import Sense
 from dexrepro.robots.inverse_kinematics import InverseKinematics
-
-Array = NDArray[np.float64]
 
 
 class Joints:
@@ -60,7 +58,7 @@ class Holding:
         if not length > 0:
             raise InputError("scene.offset = [0, 0, 0] is not allowed: a holding law needs the direction it acts along")
         self._line, self._home, self.reference = np.array(config.offset, dtype=float) / length, home, home
-        self._drive, self._joints, self._model = HoldingDrive(law), Joints(config, still, start), config.model
+        self.law, self._joints, self._model = HoldingDrive(law), Joints(config, rest(home), start), config.model
         self._servo = ComputedTorque(model=config.model, frequency=config.servo.frequency)
         self._regulation = HoldingLineRegulation(gain=config.regulation)
 
@@ -68,16 +66,11 @@ class Holding:
         line, force, q = self._line, sense.force, sense.position
         along = float(line @ force)
         lateral = self._regulation(force - along * line)
-        reference = self._drive(sense.time, float(line @ (sense.tip - self._home)), along)
+        reference = self.law(sense.time, float(line @ (sense.tip - self._home)), along)
         self.reference = self._home + reference * line + lateral
         contact = force @ self._model.jacobian(q)[:3]
         measured = Measured(sense.time, q, sense.velocity, contact)
         return Command(self._servo(measured, self._joints.towards(self.reference)).torque - contact)
-
-
-def still(time: float) -> Motion[Array]:
-    """Rest at the origin."""
-    return Motion(*np.zeros((3, 3)))
 
 
 def driver(config: Config, leader: Path, start: Array) -> tuple[Callable[[Sense], Command], Callable[[float], Array]]:
@@ -108,4 +101,4 @@ def driver(config: Config, leader: Path, start: Array) -> tuple[Callable[[Sense]
     else:
         raise InputError(f"scene law {type(law).__name__} must declare its kind, one of {', '.join(KINDS)}")
     reference = (lambda _: holding.reference) if kind == "holding" else (lambda time: beside(time).position)
-    return (limited(controller, support=model) if config.gravity_compensation else controller), reference
+    return (Limited(controller, support=model) if config.gravity_compensation else controller), reference

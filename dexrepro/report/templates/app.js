@@ -1,6 +1,8 @@
 "use strict";
 window.RECORDED = {};  // what the pages' scripts of recorded series fill
 window.SERIES = {};
+window.SCENES = {};
+window.STUDIES = {};
 
 function make(tag, values = {}, ...inside) {
   const node = Object.assign(document.createElement(tag), values);
@@ -105,7 +107,7 @@ if (contents) {
     for (const [item] of entries) item.classList.toggle("current", item === current);
   };
   addEventListener("scroll", follow, { passive: true });
-  follow();
+  new ResizeObserver(follow).observe(document.body);
 }
 
 // ---- all claims: filter
@@ -141,8 +143,25 @@ for (const place of document.querySelectorAll(".explorer")) {
     await load("vendor/uplot/uPlot.iife.min.js");
     await load("explorer.js");
     await load(`files/${place.dataset.experiment}/series.js`);
-    explore(place.querySelector(".panels"), RECORDED[place.dataset.experiment]);
+    const recorded = RECORDED[place.dataset.experiment];
+    const shown = await explore(place.querySelector(".panels"), recorded);
+    if (recorded.scene) {
+      await load("vendor/three/three.iife.min.js");
+      await load("scene.js");
+      await load(recorded.scene.script);
+      await showScene(shown, SCENES[recorded.name]);
+    }
   });
+}
+
+// ---- what if: the draws of a study
+
+for (const place of document.querySelectorAll(".whatif")) {
+  place.closest("details").addEventListener("toggle", async () => {
+    await load("whatif.js");
+    await load(`files/${place.dataset.experiment}/study.js`);
+    whatIf(place, STUDIES[place.dataset.experiment]);
+  }, { once: true });
 }
 
 // ---- a link to something folded opens it

@@ -34,9 +34,7 @@ async function explore(place, recorded) {
     if (!data.has(name)) {
       const entry = recorded.cases[name];
       await load(entry.script);
-      const key = `${recorded.name}/${name}`;
-      const columns = await unpacked(SERIES[key], entry.channels.length, entry.samples);
-      delete SERIES[key];
+      const columns = await unpacked(SERIES[entry.key], entry.channels.length, entry.samples);
       data.set(name, Object.fromEntries(entry.channels.map((channel, i) => [channel, columns[i]])));
     }
     return data.get(name);
@@ -60,8 +58,11 @@ async function explore(place, recorded) {
   reset.addEventListener("click", () => zoomTo(null, null));
   const links = make("span", { className: "note" });
   const stage = make("div");
+  const view = make("div", { className: "scene" });
+  const listeners = [];  // told the time under the cursor
+  let told = false;
   place.replaceChildren(caseBox, channelBox, make("p", { className: "note" }, reset,
-    " Drag over a panel to zoom, or focus it: \u2190 \u2192 move the cursor, + \u2212 zoom. ", links), stage);
+    " Drag over a panel to zoom, or focus it: \u2190 \u2192 move the cursor, + \u2212 zoom. ", links), view, stage);
   const chosen = (set) => [...set.querySelectorAll("input:checked")].map((input) => input.value);
 
   function zoomTo(min, max) {
@@ -128,7 +129,8 @@ async function explore(place, recorded) {
         label: name.replaceAll("_", " "), ...look.get(name), width: 1.6, spanGaps: true, points: { show: false },
         value: (_, number) => (number == null ? "–" : `${text(number)} ${unitOf[channel]}`),
       }))],
-      hooks: { setScale: [(self, key) => { if (key === "x" && !zoom.busy && self.status) zoomTo(self.scales.x.min, self.scales.x.max); }] },
+      hooks: { setScale: [(self, key) => { if (key === "x" && !zoom.busy && self.status) zoomTo(self.scales.x.min, self.scales.x.max); }],
+        setCursor: [(self) => { if (!told && self.cursor.left >= 0 && self.cursor.event) for (const listener of listeners) listener(self.posToVal(self.cursor.left, "x")); }] },
     }, joined, node);
     plot.root.tabIndex = 0;
     plot.root.setAttribute("role", "group");
@@ -156,4 +158,15 @@ async function explore(place, recorded) {
 
   addEventListener("resize", () => { for (const { plot } of panels.values()) plot.setSize({ width: Math.max(stage.clientWidth, 240), height: PANEL_HEIGHT }); });
   await update();
+
+  // The time cursor of all panels, moved from outside; and who wants to know where the reader moved it.
+  return {
+    place: view,
+    onTime: (listener) => listeners.push(listener),
+    setTime: (time) => {
+      told = true;
+      for (const { plot } of panels.values()) plot.setCursor({ left: plot.valToPos(time, "x"), top: 10 }, true, false);
+      told = false;
+    },
+  };
 }

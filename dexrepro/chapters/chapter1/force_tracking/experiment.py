@@ -11,14 +11,15 @@ from typing import Any
 import numpy as np
 
 from dexrepro.arrays import Rng
-from dexrepro.chapters.chapter1.followers import PlanarFollower
 from dexrepro.control.contract import channels
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import rms
 from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic
+from dexrepro.physics.loop import Probe
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
+from dexrepro.physics.servo import PlanarServo
 from dexrepro.physics.world import World
 from dexrepro.robots.planar import PlanarChain, planar
 
@@ -56,7 +57,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
         for name, plant in world.arms.items():
             chain = PlanarChain(config.arm.lengths, config.arm.masses, tuple(config.bases[name]))
             model = RigidBodyModel(plant.arm, gravity=(0, 0, 0), mass_error=config.arm.mass_error)
-            follower = PlanarFollower(chain, model, dt=dt, gain=config.inverse_gain, bandwidth=config.arm.bandwidth)
+            follower = PlanarServo(chain, model, dt=dt, gain=config.inverse_gain, bandwidth=config.arm.bandwidth)
             follower.reset(np.array(plant.q))
             followers[name] = follower
         (x0, height), (x1, _) = followers["leader"].last, followers["follower"].last
@@ -72,7 +73,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
             position = own.chain.forward(sense.position.tolist())[0] - x1
             return own(sense, x1 + float(law(sense.time, position, float(sense.force[0]))), height)
 
-        probes = {"reference": lambda: followers["follower"].last[0] - x1}
+        probes: dict[str, Probe] = {"reference": lambda: followers["follower"].last[0] - x1}
         probes |= channels(config.law, "weights", "estimate")
         recording = world.run(
             config.duration,

@@ -13,14 +13,14 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
-from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, TABLE
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.operator import minimum_jerk
+from dexrepro.humans.operator import strides
 from dexrepro.measures import rms
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.sensor import Sensor
+from dexrepro.physics.servo import PoseServo
 from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
@@ -51,11 +51,13 @@ def scene(config: Config, rng: Rng | None = None) -> World:
 def simulate(config: Config, rng: Rng) -> Recording:
     dt, cushion = config.control_period, config.cushion
     t = dt * np.arange(round(config.duration / dt) + 1)
-    share = np.interp((t - 0.3) / (ARRIVED - 0.3), np.linspace(0, 1, 501), np.r_[0.0, minimum_jerk(500)])
+    share = np.interp((t - 0.3) / (ARRIVED - 0.3), np.linspace(0, 1, 501), np.r_[0.0, strides(500)])
     reach = config.leader_distance - config.radius + config.touch
     path = np.array(config.place) + (reach * share - config.leader_distance)[:, None] * ALONG
     with scene(config, rng) as world:
-        arms = {name: Follower(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()}
+        arms = {
+            name: PoseServo(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()
+        }
         arms["leader"].reset(np.array(world.arm("leader").q))
         own = AssistiveFollower(
             arms["follower"], config.field, ContactLatch(**config.latch), config.law, speed_limit=config.speed_limit

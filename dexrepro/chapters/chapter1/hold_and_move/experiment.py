@@ -15,7 +15,6 @@ import numpy as np
 from scipy import signal
 
 from dexrepro.arrays import Rng
-from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.claims import PRINTED
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.control.facing import facing
@@ -26,6 +25,7 @@ from dexrepro.physics.elements import TipForce
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
+from dexrepro.physics.servo import PoseServo
 from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
@@ -80,7 +80,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     images: dict[str, Any] = {}
     with scene(config, rng) as world:
         followers = {
-            name: Follower(plant.arm, np.array(plant.q), dt=dt, mass_error=config.arm.mass_error,
+            name: PoseServo(plant.arm, np.array(plant.q), dt=dt, mass_error=config.arm.mass_error,
                            gain=config.arm.gain, singular=config.arm.singular, posture=config.arm.posture,
                            bandwidth=config.arm.bandwidth)
             for name, plant in world.arms.items()

@@ -16,13 +16,13 @@ import pandas as pd
 from scipy.spatial.transform import Rotation
 
 from dexrepro.arrays import Rng
-from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, joint_channels
 from dexrepro.control.facing import facing
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.operator import minimum_jerk
+from dexrepro.humans.operator import strides
 from dexrepro.measures import angle_between, rms
 from dexrepro.physics.rendering import Camera
+from dexrepro.physics.servo import PoseServo
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.inverse_kinematics import nearest
@@ -86,7 +86,7 @@ def script(config: Config) -> dict[str, Any]:
         inside = (t >= 6.0 * k) & (t < 6.0 * (k + 1))
         shake[inside, axis] = config.shake[k] * np.sin(2 * np.pi * t[inside] / 6.0)
     done = np.clip((t - SHAKEN) / (APPROACH - SHAKEN), 0, 1)
-    share = np.interp(done, np.linspace(0, 1, 501), np.r_[0.0, minimum_jerk(500)])
+    share = np.interp(done, np.linspace(0, 1, 501), np.r_[0.0, strides(500)])
     along = np.array([0.0, 1.0, 0.0])
     distance = config.leader_distance + (config.radius - config.leader_distance) * share
     rest = np.array(config.place)
@@ -118,7 +118,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     images: dict[str, Any] = {}
     with scene(config) as world:
         followers = {
-            name: Follower(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()
+            name: PoseServo(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()
         }
         for name, plant in world.arms.items():
             followers[name].reset(np.array(plant.q))

@@ -16,7 +16,7 @@ from dexrepro.arrays import Rng
 from dexrepro.control.facing import facing, quaternion_from_rotation_printed
 from dexrepro.control.pose_transformation import ConstantScaling, RelativePose, SpeedScaling
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.operator import minimum_jerk
+from dexrepro.humans.operator import strides
 from dexrepro.robots.rotations import quaternion_from_euler, quaternion_from_rotation, rotation_from_quaternion
 
 RATE = 1000.0
@@ -97,7 +97,7 @@ def _moves(config: Config) -> pd.DataFrame:
     rows, dt = [], config.control_period
     for duration in config.move_durations:
         n = round(duration / dt)
-        hand = config.move * np.r_[0.0, minimum_jerk(n)]
+        hand = config.move * np.r_[0.0, strides(n)]
         for incremental in (True, False):
             pose = RelativePose(scaling=SpeedScaling(), dt=dt, incremental=incremental)
             pose.reset(np.zeros(3), np.eye(3), np.zeros(3), np.eye(3))

@@ -14,16 +14,16 @@ import pandas as pd
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
-from dexrepro.chapters.chapter1.followers import Follower
 from dexrepro.chapters.chapter1.hold_and_move.experiment import FLIP, LEVEL, SIDES, TABLE
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.control.potential_field import PotentialField
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
-from dexrepro.humans.operator import minimum_jerk
+from dexrepro.humans.operator import strides
 from dexrepro.measures import binomial_interval, rms
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
+from dexrepro.physics.servo import PoseServo
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, palm, posture
 from dexrepro.robots.inverse_kinematics import nearest
@@ -75,7 +75,7 @@ def leading(config: Config) -> tuple[Any, Any]:
     """DFR's end point (n, 3) [m] and how far both hands open (n,) [m], one row a control period."""
     dt = config.control_period
     t = dt * np.arange(round(config.duration / dt) + 1)
-    profile = np.r_[0.0, minimum_jerk(500)]
+    profile = np.r_[0.0, strides(500)]
 
     def step(start: float, end: float) -> Any:
         return np.interp((t - start) / (end - start), np.linspace(0, 1, 501), profile)
@@ -126,7 +126,9 @@ def _carry(config: Config, rng: Rng, offset: Any, pictures: dict[str, Any] | Non
     dt = config.control_period
     path, opening = leading(config)
     with scene(config, rng, offset) as world:
-        arms = {name: Follower(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()}
+        arms = {
+            name: PoseServo(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()
+        }
         arms["leader"].reset(np.array(world.arm("leader").q))
         own = AssistiveFollower(
             arms["follower"], field_of(config), ContactLatch(**config.latch), config.law, speed_limit=config.speed_limit

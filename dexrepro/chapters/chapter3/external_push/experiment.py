@@ -6,9 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
 from dexrepro.chapters.chapter3.scene import ARM, ELBOW, FOREARM, MID_FOREARM, Touching, build, cutaway, gripper_arm
@@ -20,7 +19,6 @@ from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
 from dexrepro.robots.kinematics import joint_frames, point_jacobian
 
-Array = NDArray[np.float64]
 RATE = 100.0
 SWEPT = {"lag": "lag", "noisy": "noisy_error", "clean": "clean_error"}
 

@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.ndimage import find_objects
 from scipy.ndimage import label as regions_of
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Mask, Rng
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.scene import ARM, Touching, add_box, cutaway, gripper_arm, start_posture
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
@@ -25,7 +24,6 @@ from dexrepro.vision.classifier import GraspClassifier
 from dexrepro.vision.patches import Grasp, Picture, cut, observe
 from dexrepro.vision.tabletop import BAD, Box, Item, label, place_items, scatter, taken, training_set
 
-Array = NDArray[np.float64]
 VIEW = Camera(target=(0.5, -0.25, 0.2), distance=1.3, yaw=40.0, pitch=-25.0)
 FINGERS = 0.04  # m, how far the fingers, which are not bodies of the simulation, reach beyond the tool's tip
 
@@ -124,7 +122,7 @@ def find_opening(picture: Picture, config: Config) -> tuple[float, float]:
     return (x0 + x1) / 2, (y0 + y1) / 2
 
 
-def _enclosed(deep: NDArray[np.bool_]) -> tuple[int, int, int, int]:
+def _enclosed(deep: Mask) -> tuple[int, int, int, int]:
     """First and last row and column of the largest deep region that does not touch the picture's border."""
     regions, _ = regions_of(deep)
     border = set(np.concatenate((regions[0], regions[-1], regions[:, 0], regions[:, -1])).tolist())

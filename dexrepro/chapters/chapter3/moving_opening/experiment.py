@@ -6,9 +6,8 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
 from dexrepro.chapters.chapter3.scene import ARM, Touching, build, cutaway
@@ -16,7 +15,6 @@ from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
 
-Array = NDArray[np.float64]
 RATE = 50.0
 VIEW = Camera(target=(0.45, -0.15, 0.2), distance=1.6, yaw=30.0, pitch=-40.0)
 

@@ -8,15 +8,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Array, Rng
 from dexrepro.control.fixed_time import secant, settling_bound
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.robots.baxter import baxter, posture
-
-Array = NDArray[np.float64]
 
 
 def simulate(config: Config, rng: Rng) -> Recording:

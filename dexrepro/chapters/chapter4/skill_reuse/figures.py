@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from dexrepro.arrays import Array, Mask
 from dexrepro.chapters.chapter4.two_link import ELLIPSE
 from dexrepro.experiment import Config, Drawing, Drawings, Figure, Metrics, Recording
 from dexrepro.report import style
@@ -96,7 +96,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     return {"T4.A": pd.DataFrame(rows)}
 
 
-Array = NDArray[np.float64]
 METHODS = {
     "broad20": (r"broad, $\Theta$ = 20", "book"),
     "broad30": (r"broad, $\Theta$ = 30", "extra1"),
@@ -112,7 +111,7 @@ Recordings = Mapping[str, Recording]
 AllMetrics = Mapping[str, Metrics]
 
 
-def run_of(recording: Recording, number: int = ELLIPSE) -> tuple[Array, NDArray[np.bool_]]:
+def run_of(recording: Recording, number: int = ELLIPSE) -> tuple[Array, Mask]:
     """Time [s] from the start of one segment, and the mask of its samples."""
     now = recording["segment"] == number
     time = recording.time[now]

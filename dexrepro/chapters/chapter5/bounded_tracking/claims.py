@@ -5,7 +5,7 @@ from __future__ import annotations
 from dexrepro.claims import Claim, Predicate, every, greater, less
 
 TRACKING = "bounded_tracking"
-LETTERS = ("a", "w", "z", "k", "l", "A")
+LETTERS = ("a", "w", "z", "k", "l", "capital")
 
 
 def within_limits(case: str) -> Predicate:

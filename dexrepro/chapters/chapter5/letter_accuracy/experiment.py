@@ -10,7 +10,6 @@ import pandas as pd
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import letters
-from dexrepro.config import one_of
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.primitives import DMP, Demonstration, GaussianKernels, TruncatedKernels, extend
 
@@ -56,8 +55,7 @@ def _learn(
         learned["dmp_double"] = _fit(letters.kernels(2 * count, config, rivals), taught, config)
         fewest = 2 * min(config.kernels.counts) + largest
         learned["dmp_fixed"] = _fit(letters.kernels(fewest, config, rivals), taught, config)
-    update = one_of("training.solution", training.solution, ("exact", "printed_start", "row_wise", "scalar"))
-    options = {"update": update, **{key: training[key] for key in ("rest", "rcond", "ridge")}}
+    options = {"update": training.solution, **{key: training[key] for key in ("rest", "rcond", "ridge")}}
     for m in config.features.counts:
         learned[f"idmp{m}"] = extend(base, features.first(m), taught, **options)
     return learned

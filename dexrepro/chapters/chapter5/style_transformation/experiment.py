@@ -10,7 +10,6 @@ import pandas as pd
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import letters
-from dexrepro.config import one_of
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms_distance
 from dexrepro.primitives import DMP, Demonstration, ExtendedKernels, extend, extend_styles, interpolate, original
@@ -81,12 +80,11 @@ def _learn(
     )  # fmt: skip
     features = letters.features(kernels, max(config.features.counts), config, rng)
     learned, most = {}, max(config.features.counts)
-    solution = one_of("training.solution", training.solution, ("exact", "printed_start", "row_wise", "scalar"))
     for m in (0, *config.features.counts):
         styles = extend_styles(
             base, features if m == most else features.first(m), [shown[name] for name in config.hand.targets],
             relearn_old=training.relearn_old and m > 0, rest=training.rest, rcond=training.rcond,
-            update=solution if m else "exact",
+            update=training.solution if m else "exact",
         )  # fmt: skip
         learned.update({(name, m): style for name, style in zip(config.hand.targets, styles)})
     return learned, features

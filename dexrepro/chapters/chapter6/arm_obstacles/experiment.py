@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import arms, learning
-from dexrepro.config import one_of
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans import waypoints
 from dexrepro.physics.model import RigidBodyModel
@@ -77,7 +73,7 @@ def _learned(config: Config, rng: np.random.Generator) -> DMP:
     return learning.learn(time * config.duration / time[-1], mean, config.dmp)
 
 
-def _path(config: Config, primitive: DMP, movement: Trajectory) -> tuple[NDArray[Any], Reference, int]:
+def _path(config: Config, primitive: DMP, movement: Trajectory) -> tuple[Array, Reference, int]:
     """Path (n, 2) [cm] of the law, its reference round the new box, and the number of projected steps."""
     reference = _reference(config, movement)
     skill, batch = learning.skill([primitive], [movement]), learning.stack([reference])
@@ -95,7 +91,7 @@ def _reference(config: Config, movement: Trajectory) -> Reference:
     leave, resume = int(near[0]), int(near[-1])
     start, end = (np.arctan2(*(path[i] - centre)[::-1]) for i in (leave, resume))
     trim = np.radians(config.trim)
-    if one_of("detour_side", config.detour_side, ("far", "near")) == "near":
+    if config.detour_side == "near":
         around = arc(centre, radius, start - trim, end - 2 * np.pi + trim)
     else:
         around = arc(centre, radius, start + trim, end - trim)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from dexrepro.arrays import Array, Rng
+from dexrepro.arrays import Array, Image, Rng
 from dexrepro.chapters.chapter6 import arms, bimanual
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
@@ -80,7 +77,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     return run
 
 
-def _palm_path(config: Config, time: Array, wrists: Array) -> tuple[NDArray[Any], ...]:
+def _palm_path(config: Config, time: Array, wrists: Array) -> tuple[Array, ...]:
     """Time (n,), palm tips (n, 2, 3) [m] and rotations (n, 2, 3, 3) with squeeze, and the box's ends (n, 2, 3) [m].
 
     A ramp from just clear of the box comes first. The person's frame is turned and shifted in front of the robot.
@@ -107,7 +104,7 @@ def _palm_path(config: Config, time: Array, wrists: Array) -> tuple[NDArray[Any]
     )
 
 
-def _pictures(world: World, run: Recording, config: Config) -> dict[str, NDArray[np.uint8]]:
+def _pictures(world: World, run: Recording, config: Config) -> dict[str, Image]:
     images = {}
     for i, share in enumerate(config.pictures):
         k = int(share * (len(run.time) - 1))

@@ -8,9 +8,8 @@ import numpy as np
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning
-from dexrepro.config import one_of
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.measures import rms
 from dexrepro.primitives.coupling import Agents, SurfaceFollower, coupled_rollout, steering
 from dexrepro.primitives.dmp import DMP
@@ -20,7 +19,6 @@ RATE = 100.0
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
-    one_of("system", config.system, ("surface", "obstacle", "distance", "force"))
     if config.system == "surface":
         series = _surface(config)
     elif config.system == "obstacle":

@@ -33,7 +33,7 @@ CLAIMS = (
                 for law in ("consistent", "printed", "feedforward", "printed_h2", "feedforward_h2")
             ),
         ),
-        no_control="it fails itself; a primitive without constraint arrives, so nothing can be taken away for it to fail",
+        no_control="it fails itself, and a primitive without constraint arrives",
         searched="three readings of the acceleration, the barrier's weight 1 and H^2, three places of the obstacle",
         where="Remark 6.2, 6.3.3",
         note="Its Lyapunov function has its infimum at infinity: the error grows like sqrt(t). Weighted by 1 the barrier is "

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning
-from dexrepro.config import one_of
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.primitives.barrier import Constraint
 from dexrepro.primitives.constrained import Path, Reference, rollout
 from dexrepro.primitives.dmp import DMP, Trajectory
@@ -29,7 +25,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     skill = learning.skill([primitive] * runs, [movement] * runs)
     start = np.broadcast_to(primitive.start, (runs, 2)), np.zeros((runs, 2))
     c = config.cdmp
-    if one_of("route", config.route, ("outside", "detour")) == "detour":
+    if config.route == "detour":
         reference = _detour(config, movement, centres)
         constraint = learning.tube(c, c.margin)
     else:
@@ -82,7 +78,7 @@ def _obstacles(config: Config, time: Array, index: int) -> Reference:
 def _detour(config: Config, movement: Trajectory, centres: list[Reference]) -> Reference:
     """Learned path plus sideways bumps, behind each disk, the smallest that clear its forecast by the margin."""
     w, need = config.bump_width, config.radius + config.cdmp.margin
-    parts: list[list[NDArray[Any]]] = [[], [], []]
+    parts: list[list[Array]] = [[], [], []]
     for i, (offset, speed) in enumerate(zip(config.offsets, config.speeds)):
         found = [part.copy() for part in (movement.position, movement.velocity, movement.acceleration)]
         for index, (place, centre) in enumerate(zip(config.places, centres)):

@@ -7,27 +7,24 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning, plane
-from dexrepro.config import one_of
+from dexrepro.control.motion import minimum_jerk
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
-from dexrepro.humans.waypoints import minimum_jerk
 from dexrepro.primitives.constrained import Law, Reference, Skill, rollout
 from dexrepro.primitives.coupling import Term, coupled_rollout, dynamic_potential, steering
 from dexrepro.primitives.obstacles import Polygon, clearance
 
 RATE = 0.0
-Terms = Callable[[Polygon, NDArray[Any], NDArray[Any]], Term]
+Terms = Callable[[Polygon, Array, Array], Term]
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
     old, block = plane.obstacles(config)
     lesson = plane.teach(config, rng("demonstrations"))[0]
     movement = lesson.second.rollout(lesson.durations[1] / config.steps, horizon=lesson.durations[1])
-    one_of("method", config.method, ("centroid", "closest", "boundary", "potential", "filter", "constrained"))
     if config.method in ("constrained", "filter"):
         frames = _constrained(config, lesson, movement, rng("reference_noise"))
     else:
@@ -111,7 +108,7 @@ def _constrained(
     return {"path": pd.DataFrame(path.position[:, 0], columns=["x", "y"]), "noise": pd.DataFrame(rows)}
 
 
-def _straight(config: Config, runs: int) -> tuple[Skill, NDArray[Any], float]:
+def _straight(config: Config, runs: int) -> tuple[Skill, Array, float]:
     """A straight 10 cm reach for some runs, their starts, and the step [s]."""
     time = np.linspace(0, config.reach_duration, 201)
     path = np.stack([10 * minimum_jerk(time / config.reach_duration), np.zeros_like(time)], axis=1)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import bimanual
 from dexrepro.experiment import Config, Metrics, Recording
 
@@ -40,7 +37,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
 def _spread(movement: bimanual.Movement) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Distance to the median over time (group 0) and its 95th percentile in every group."""
     distance = np.linalg.norm(movement.measured - np.median(movement.measured, axis=1, keepdims=True), axis=-1)
-    columns: dict[str, NDArray[Any]] = {"u": np.linspace(0, 1, distance.shape[2])}
+    columns: dict[str, Array] = {"u": np.linspace(0, 1, distance.shape[2])}
     percentiles = {}
     for index in range(6):
         name = f"{('shoulder', 'elbow', 'wrist')[index % 3]}_{SIDES[index // 3]}"

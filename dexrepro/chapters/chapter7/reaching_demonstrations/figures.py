@@ -51,7 +51,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     return figures
 
 
-def draw_pictures(images: Mapping[str, Any]) -> dict[str, Any]:
+def draw_pictures(images: Mapping[str, Any]) -> Drawings:
     from dexrepro.report import style
 
     shown = style.trimmed({name: image for name, image in images.items() if name != "platform"})

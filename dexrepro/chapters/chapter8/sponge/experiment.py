@@ -6,10 +6,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter8 import learning_study
 from dexrepro.chapters.chapter8.task import beyond, displaced
 from dexrepro.control.contract import build, channels
@@ -17,14 +16,13 @@ from dexrepro.control.interaction_optimum import InteractionCost, InteractionMod
 from dexrepro.control.motion import Motion, Path
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.networks import GrowingGaussians
-from dexrepro.physics.drive import EndPointDrive, Posture, limited
+from dexrepro.physics.drive import EndPointDrive, Limited, Posture
 from dexrepro.physics.elements import TipForce
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter
 
-Array = NDArray[np.float64]
 RATE = 50.0
 VIEW = Camera(target=(0.45, -0.3, 0.27), distance=1.2, yaw=25.0, pitch=-15.0)
 
@@ -69,7 +67,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     with scene(config) as world:
         recording = world.run(
             config.duration,
-            controllers={"arm": limited(drive, limits, model if config.gravity_compensation else None)},
+            controllers={"arm": Limited(drive, limits, model if config.gravity_compensation else None)},
             control_period=config.control_period,
             probes={
                 "reference": lambda: drive.desired.position,

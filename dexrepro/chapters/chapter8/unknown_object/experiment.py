@@ -6,9 +6,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Mask, Rng
 from dexrepro.chapters.chapter8 import learning_study
 from dexrepro.chapters.chapter8.task import beyond, circle, displaced, two_link
 from dexrepro.control.contract import build
@@ -109,7 +108,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
     return metrics
 
 
-def _contact(recording: Recording) -> NDArray[np.bool_]:
+def _contact(recording: Recording) -> Mask:
     return recording["object.x"] != 0.0
 
 

@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from dexrepro.arrays import Rng
+from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.own.drivers import driver
 from dexrepro.chapters.own.paths import leader_path
 from dexrepro.config import InputError
@@ -23,7 +22,6 @@ from dexrepro.robots.arm import Arm
 from dexrepro.robots.inverse_kinematics import Unreachable, solve
 from dexrepro.robots.kinematics import forward
 
-Array = NDArray[np.float64]
 CHECKED = 25  # points of the path whose reach is checked
 
 

@@ -1,12 +1,14 @@
-"""Arms that follow a pose of their end point: closed-loop inverse kinematics, Eq. (1.3), under computed torque."""
+"""Arms that follow joints, a pose or a place: closed-loop inverse kinematics, Eq. (1.3), under computed torque."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
+from dexrepro.arrays import Array
+from dexrepro.control.computed_torque import ComputedTorque
+from dexrepro.control.contract import Measured
+from dexrepro.control.motion import Motion
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.robots.arm import Arm
@@ -14,38 +16,41 @@ from dexrepro.robots.inverse_kinematics import InverseKinematics
 from dexrepro.robots.planar import PlanarChain
 from dexrepro.robots.rotations import rotation_error
 
-Array = NDArray[np.float64]
 
+class JointServo:
+    """Computed torque along a joint reference that moves at a constant rate, the measured tip force compensated.
 
-class ComputedTorque:
-    """Torque that makes an arm's joints follow a moving reference, with the measured tip force compensated.
-
-    model: what is known of the arm; bandwidth: [rad/s] of the critically damped error dynamics. Called with a Sense.
+    model: what is known of the arm; bandwidth: [rad/s] of the critically damped error dynamics. A controller, or the
+    inner one of a control period, for :meth:`World.run`.
     """
 
     def __init__(self, model: RigidBodyModel, bandwidth: float) -> None:
-        self.model, self.bandwidth = model, bandwidth
+        self.law = ComputedTorque(model=model, frequency=bandwidth)
 
-    def reset(self, position: Array) -> None:
+    def reset(self, position: ArrayLike) -> None:
         """Take the joint angles (n,) [rad] as reference, at rest."""
-        self.start, self.rate, self.since = np.array(position, float), np.zeros(len(position)), 0.0
-        self.compensation = np.zeros(len(position))
+        self.start = np.array(position, float)
+        self.rate = self.compensation = np.zeros(len(self.start))
+        self.since = 0.0
 
-    def refer(self, time: float, position: Array, rate: Array, compensation: Array) -> None:
+    def refer(self, time: float, position: Array, rate: Array, compensation: Array | None = None) -> None:
         """From ``time`` [s] on: reference angles ``position`` moving at ``rate`` [rad/s], and torque -J^T F [N m]."""
-        self.since, self.start, self.rate, self.compensation = time, position, rate, compensation
+        self.since, self.start, self.rate = time, position, rate
+        self.compensation = np.zeros(len(rate)) if compensation is None else compensation
 
     def __call__(self, sense: Sense) -> Array:
-        w = self.bandwidth
-        error = self.start + (sense.time - self.since) * self.rate - sense.position
-        wanted = w * w * error + 2.0 * w * (self.rate - sense.velocity)
-        return self.model.inverse_dynamics(sense.position, sense.velocity, wanted) + self.compensation
+        reference = self.start + (sense.time - self.since) * self.rate
+        measured = Measured(sense.time, sense.position, sense.velocity, -self.compensation)
+        torque = self.law(measured, Motion(reference, self.rate, np.zeros(len(reference)))).torque
+        assert torque is not None
+        return torque + self.compensation
 
 
-class Follower:
+class PoseServo:
     """A spatial arm led by poses of its end point, one a control period.
 
-    gain: k_E [1/s]; singular: damping of the pseudo-inverse [m]; posture: share of the pull towards ``home`` [1/s].
+    dt: control period [s]; gain: k_E [1/s]; singular: damping of the pseudo-inverse [m]; posture: share of the pull
+    towards ``home`` (n,) [1/s]; bandwidth: as for JointServo; mass_error: of the model the arm is moved with.
     """
 
     def __init__(
@@ -54,15 +59,15 @@ class Follower:
     ) -> None:  # fmt: skip
         self.dt, self.model = dt, RigidBodyModel(arm, mass_error=mass_error)
         self.inverse = InverseKinematics(arm, "pose", gain, dt, singular, home, posture, self.model, redistribute=False)
-        self.torque = ComputedTorque(self.model, bandwidth)
+        self.torque = JointServo(self.model, bandwidth)
 
-    def reset(self, position: Array) -> None:
-        """Start from joint angles (7,) [rad]."""
+    def reset(self, position: ArrayLike) -> None:
+        """Start from joint angles (n,) [rad]."""
         self.inverse.reset(position)
         self.torque.reset(position)
         self.last: tuple[Array, Array] | None = None
 
-    def go(self, sense: Sense, position: Array, rotation: Array) -> ComputedTorque:
+    def go(self, sense: Sense, position: Array, rotation: Array) -> JointServo:
         """Aim at a position (3,) [m] and rotation (3, 3); returns the controller of the coming control period."""
         velocity = np.zeros(6)
         if self.last is not None:
@@ -76,31 +81,33 @@ class Follower:
         return self.torque
 
 
-class PlanarFollower:
-    """A planar arm led by positions (x, y) of its end point [m], one a physics step.
+class PlanarServo:
+    """A planar arm of three rods led by positions (x, y) of its end point [m], one a physics step dt [s].
 
     gain: k_E [1/s] of Eq. (1.3); a negative one is the printed sign with a positive gain.
     """
 
-    def __init__(self, chain: PlanarChain, model: RigidBodyModel, *, dt: float, gain: float, bandwidth: float) -> None:
+    def __init__(
+        self, chain: PlanarChain[float], model: RigidBodyModel, *, dt: float, gain: float, bandwidth: float
+    ) -> None:
         self.chain, self.dt, self.gain = chain, dt, gain
-        self.torque = ComputedTorque(model, bandwidth)
+        self.torque = JointServo(model, bandwidth)
 
-    def reset(self, position: Array) -> None:
+    def reset(self, position: ArrayLike) -> None:
         """Start from joint angles (3,) [rad]."""
-        self.reference = tuple(float(angle) for angle in position)
+        self.reference: list[float] = np.asarray(position, dtype=float).tolist()
         self.last = self.chain.forward(self.reference)
-        self.torque.reset(np.array(self.reference))
+        self.torque.reset(position)
 
-    def __call__(self, sense: Sense, x: float, y: float) -> Any:
+    def __call__(self, sense: Sense, x: float, y: float) -> Array:
         """Joint torques (3,) [N m] on the way to (x, y) [m]."""
         q, (hx, hy) = self.reference, self.chain.forward(self.reference)
         vx = (x - self.last[0]) / self.dt + self.gain * (x - hx)
         vy = (y - self.last[1]) / self.dt + self.gain * (y - hy)
         self.last = x, y
         rate = self.chain.rates(q, (vx, vy))
-        compensation = self.chain.tip_torque(sense.position.tolist(), (-sense.force[0], -sense.force[1]))
+        fx, fy, _ = sense.force.tolist()
+        compensation = self.chain.tip_torque(sense.position.tolist(), (-fx, -fy))
         self.torque.refer(sense.time, np.array(q), np.array(rate), np.array(compensation))
-        dt = self.dt
-        self.reference = (q[0] + dt * rate[0], q[1] + dt * rate[1], q[2] + dt * rate[2])
+        self.reference = [angle + self.dt * speed for angle, speed in zip(q, rate)]
         return self.torque(sense)

@@ -1,0 +1,80 @@
+"""What joins a law to a comparison: its kind, what it needs, what it reports."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from dexrepro.control.contract import build, channels, check, coriolis, memory, printed_forms, report
+from dexrepro.robots.planar import PlanarChain
+
+
+class Plain:
+    kind = "joint"
+
+    def __call__(self, measured, desired): ...
+
+
+class Learning(Plain):
+    needs = ("model", "network")
+
+    def __init__(self, model, network=None):
+        self.model, self.network = model, network
+
+    def diagnostics(self):
+        return {"nodes": 3.0}
+
+
+class Model:
+    """A planar arm in a vertical plane."""
+
+    chain = PlanarChain((0.5, 0.3, 0.1), (1.5, 0.9, 0.2))
+
+    def gravity(self, q):
+        return np.array(self.chain.gravity(q))
+
+    def bias(self, q, dq):
+        return np.array(self.chain.torque(q, dq, np.zeros(3))) + self.gravity(q)
+
+
+def test_a_law_takes_what_it_needs_of_what_is_offered_and_keeps_what_it_was_given():
+    law = build(partial(Learning, network="own"), model="arm", network="offered", stiffness=3.0)
+    assert (law.model, law.network) == ("arm", "own")
+    assert build(law, model="another") is law
+    with pytest.raises(ValueError, match=r"Learning: .*model.*; this comparison offers stiffness"):
+        build(partial(Learning), stiffness=3.0)
+
+
+def test_a_law_of_another_kind_or_of_none_is_refused():
+    law = Plain()
+    assert check(law, "joint") is law
+    with pytest.raises(ValueError, match="Plain is of kind 'joint'; here a law of kind 'holding' is wanted"):
+        check(law, "holding")
+    with pytest.raises(ValueError, match="object is no law: its class must declare kind = 'joint'"):
+        check(object(), "joint")
+
+
+def test_printed_forms_are_a_list_of_known_words():
+    assert printed_forms(["sign"], ("sign", "gain")) == {"sign"}
+    assert printed_forms([], ("sign",)) == frozenset()
+    for wrong in ("sign", ["sine"], ["sign", "sine"]):
+        with pytest.raises(ValueError, match="must be a list of sign, gain"):
+            printed_forms(wrong, ("sign", "gain"))
+
+
+def test_only_what_a_law_reports_becomes_a_channel():
+    law = Learning("arm", network="memory")
+    assert report(Plain()) == {}
+    probes = channels(law, "nodes", "estimate")
+    assert {name: probe() for name, probe in probes.items()} == {"nodes": 3.0}
+    assert (memory(law), memory(partial(Learning, network="open")), memory(Plain())) == ("memory", "open", None)
+
+
+def test_coriolis_terms_come_from_inverse_dynamics_alone():
+    """C(q, u) v is linear in both and symmetric, and C(q, u) u is what bias has beside gravity."""
+    model, rng = Model(), np.random.default_rng(0)
+    q, u, v, w = rng.normal(size=(4, 3))
+    assert coriolis(model, q, u, u) == pytest.approx(model.bias(q, u) - model.gravity(q))
+    assert coriolis(model, q, u, v) == pytest.approx(coriolis(model, q, v, u))
+    both = coriolis(model, q, u, v) + 2.0 * coriolis(model, q, u, w)
+    assert coriolis(model, q, u, v + 2.0 * w) == pytest.approx(both)

@@ -1,0 +1,164 @@
+"""What is typed, and what surrounds a command: one sentence, a status, and nothing lost."""
+
+from __future__ import annotations
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, Command, whole
+
+pytestmark = pytest.mark.usefixtures("bounded")
+HUGE = "9" * 400
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("+decay.cases.q={each:nosuch}", "decay.cases.q.each: unknown key 'nosuch'"),
+        ("+decay.cases.q={each:5}", "decay.cases.q.each: unknown key '5'"),
+        ("~seed", "'seed' cannot be left out"),
+        ("~results", "'results' cannot be left out"),
+        ("~decay", "experiment 'decay' has no block"),
+        ("decay=5", "experiment 'decay' has no block"),
+        (f"seed={HUGE}", "seed = 9999"),
+        (f"decay.start={HUGE}", "decay.start = 9999"),
+        (f"decay.start=-{HUGE}", "decay.start = -9999"),
+        ("decay.start=inf", "decay.start = inf is not allowed: it must be a finite number"),
+        ("+decay.cases.summary={}", "'summary' is not allowed as a name"),
+        ("+decay.cases={a.b:{}}", "is not allowed"),
+        ("+decay.cases={../up:{}}", "is not"),
+        ("+decay.nan=1", "unknown key 'decay.nan'"),
+        ("+decay.1.5=1", "unknown key"),
+        ("hydra=5", "must be a string or a list"),
+        ("workers=60.5", "workers = 60.5 is not allowed"),
+        ("case_timeout=-1", "case_timeout = -1 is not allowed"),
+        ("case_timeout=never", "case_timeout = never is not allowed"),
+        ("case_timeout=true", "case_timeout = True is not allowed"),
+        ("seed=${nosuch}", "seed = ${nosuch} is not allowed"),
+        ("decay.rate=${nosuch.key}", "decay"),
+        ("decay.rate=${decay.rate}", "decay"),
+        ("shared=null", "decay"),
+        ("decay.start=\udcff", "is not"),
+        ("decay.law._target_=os.system", "cannot build the objects"),
+        ("decay.law._target_=nosuch.Law", "cannot build the objects"),
+        ("decay.law._target_=5", "decay"),
+    ],
+)
+def test_what_cannot_be_run_says_so(toy: Path, command: Command, words: str, sentence: str) -> None:
+    status, said = command(f"run only=decay workers=1 {words}")
+    assert status in (1, 2)
+    assert sentence in " ".join(said.split())
+    assert not list(toy.glob("results/*/decay*/metrics.json"))
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("check only=decai", "did you mean 'decay'?"),
+        ("check chapter=91", "unknown chapter '91'"),
+        ("check figure=90.11", "unknown figure '90.11'"),
+        ("draw figure=T90.7", "unknown figure 'T90.7'"),
+        ("study only=needs_more samples=1", "there is no claim that a study could test"),
+        ("render nowhere", "nowhere holds no result"),
+        ("render only=decay", "has no scene to render"),
+        ("diff results/chapter90/decay nowhere", "nowhere holds no result"),
+    ],
+)
+def test_a_selection_that_selects_nothing_is_named(
+    toy_result: Path, command: Command, words: str, sentence: str
+) -> None:
+    before = whole(toy_result)
+    status, said = command(words)
+    assert status == 2
+    assert sentence in " ".join(said.split())
+    assert whole(toy_result) == before
+
+
+def typed(toy: Path, line: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """A command line in a shell, in the folder of the toy."""
+    env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
+    return subprocess.run(
+        line, shell=True, cwd=toy, env=env | environment, capture_output=True, text=True, timeout=55, check=False,
+        errors="replace",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("module", ["numbers", "pandas", "yaml", "json", "hydra"])
+def test_a_file_of_the_user_does_not_take_the_place_of_a_package(toy: Path, toy_result: Path, module: str) -> None:
+    (toy / f"{module}.py").write_text("raise SystemExit('taken over')")
+    done = typed(toy, "dexrepro check")
+    assert "taken over" not in done.stdout + done.stderr
+    assert "chapter 90: " in done.stdout
+
+
+def test_a_law_beside_the_data_is_found(toy: Path, command: Command) -> None:
+    (toy / "law_of_mine.py").write_text(
+        "class Half(float):\n    def __new__(cls):\n        return super().__new__(cls, 0.5)\n"
+    )
+    assert command("run only=decay workers=1 +decay.cases.mine.law._target_=law_of_mine.Half")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("line", "environment"),
+    [
+        ("dexrepro check >&-", {}),
+        ("dexrepro check 2>&-", {}),
+        ("dexrepro check </dev/null >/dev/full", {}),
+        ("dexrepro check | true", {}),
+        ("dexrepro check", {"LC_ALL": "de_DE.iso88591", "PYTHONUTF8": "0"}),
+        ("dexrepro check", {"LC_ALL": "C", "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"}),
+        ("dexrepro check", {"PYTHONOPTIMIZE": "2"}),
+        ("dexrepro check", {"TERM": "dumb", "COLUMNS": "1"}),
+        ("dexrepro report", {"LC_ALL": "de_DE.iso88591", "PYTHONUTF8": "0"}),
+        ("dexrepro draw", {"LC_ALL": "C", "PYTHONUTF8": "0", "HOME": "/nonexistent", "MPLCONFIGDIR": "/dev/null/no"}),
+    ],
+)
+def test_odd_surroundings_change_nothing(toy: Path, toy_result: Path, line: str, environment: dict[str, str]) -> None:
+    before = (toy_result / "metrics.json").read_bytes()
+    done = typed(toy, line, **environment)
+    assert "Traceback" not in done.stderr + done.stdout
+    assert done.returncode in (0, 1, 2)
+    assert (toy_result / "metrics.json").read_bytes() == before
+
+
+@pytest.mark.parametrize("where", ["results/.cache", "results", "results/chapter90"])
+def test_a_full_or_missing_disk_is_named(
+    toy_result: Path, command: Command, monkeypatch: pytest.MonkeyPatch, where: str
+) -> None:
+    before, mkdir = whole(toy_result), Path.mkdir
+
+    def full(path: Path, *arguments: object, **options: object) -> None:
+        if str(path).startswith(where) and path.suffix == ".part":
+            raise OSError(28, "No space left on device", str(path))
+        mkdir(path, *arguments, **options)
+
+    monkeypatch.setattr(Path, "mkdir", full)
+    status, said = command("run only=decay workers=1 force=true")
+    assert status == 1
+    assert "No space left on device" in said
+    assert whole(toy_result) == before
+
+
+def test_every_text_file_is_utf8_by_decree() -> None:
+    """Also where a system has another alphabet: no call leaves the encoding open."""
+    left = []
+    for path in (ROOT / "dexrepro").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.Call):
+                continue
+            name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+            given = len(node.args) + any(keyword.arg == "encoding" for keyword in node.keywords)
+            binary = any(isinstance(item, ast.Constant) and "b" in str(item.value) for item in node.args[1:2])
+            if (name, given) in (("read_text", 0), ("write_text", 1)) or (
+                name == "open"
+                and isinstance(node.func, ast.Name)
+                and given < 3
+                and not binary
+                and not any(keyword.arg == "encoding" for keyword in node.keywords)
+            ):
+                left.append(f"{path.name}:{node.lineno}")
+    assert not left

@@ -1,0 +1,290 @@
+"""Files that are damaged, foreign or missing: run again with a word, or named in one sentence; nothing else is lost."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import Command
+
+from dexrepro import baselines, study
+from dexrepro.storage import read_json, write_json
+
+pytestmark = pytest.mark.usefixtures("bounded")
+Damage = Callable[[Path], object]
+RESULT = Path("results/chapter90/decay")
+
+
+def text(name: str, content: str | bytes) -> Damage:
+    return lambda folder: (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+
+
+def short(name: str, size: int) -> Damage:
+    return lambda folder: (folder / name).write_bytes((folder / name).read_bytes()[:size])
+
+
+def gone(name: str) -> Damage:
+    def remove(folder: Path) -> None:
+        shutil.rmtree(folder / name) if (folder / name).is_dir() else (folder / name).unlink()
+
+    return remove
+
+
+def flipped(name: str) -> Damage:
+    def flip(folder: Path) -> None:
+        content = bytearray((folder / name).read_bytes())
+        content[len(content) // 2] ^= 255
+        (folder / name).write_bytes(content)
+
+    return flip
+
+
+def changed(name: str, change: Callable[[dict], object]) -> Damage:
+    def edit(folder: Path) -> None:
+        data = read_json(folder / name)
+        change(data)
+        write_json(folder / name, data)
+
+    return edit
+
+
+# ----------------------------------------------------------------------------------------------------------- the cache
+
+CACHE = {
+    "empty": text("case.json", ""),
+    "cut short": short("case.json", 200),
+    "a list": text("case.json", "[]"),
+    "null": text("case.json", "null"),
+    "binary": text("case.json", b"\xff\xfe\x00"),
+    "no entry": changed("case.json", lambda data: data.pop("entry")),
+    "other entry": changed("case.json", lambda data: data.update(entry={"wall": 1})),
+    "no metrics": changed("case.json", lambda data: data.update(metrics=None)),
+    "no files": changed("case.json", lambda data: data.pop("files")),
+    "no case.json": gone("case.json"),
+    "series cut short": short("series/plain.csv.gz", 100),
+    "series empty": text("series/plain.csv.gz", b""),
+    "series gone": gone("series/plain.csv.gz"),
+    "no series": gone("series"),
+    "a flipped byte": flipped("series/plain.csv.gz"),
+}
+
+
+@pytest.mark.parametrize("kind", CACHE)
+def test_a_damaged_case_is_run_again_with_a_word(toy_result: Path, command: Command, kind: str) -> None:
+    before = (toy_result / "metrics.json").read_bytes()
+    shutil.rmtree(toy_result)
+    CACHE[kind](next(Path("results/.cache/decay").glob("plain-*")))
+    status, said = command("run workers=1")
+    assert status == 0, said
+    assert "decay.plain is damaged in results/.cache/decay: run again" in said
+    assert "decay.fast:" not in said, "the others are still there"
+    assert (toy_result / "metrics.json").read_bytes() == before
+
+
+def test_a_cached_series_is_never_the_file_that_a_user_may_edit(toy_result: Path, command: Command) -> None:
+    cached = next(Path("results/.cache/decay").glob("plain-*/series/plain.csv.gz"))
+    assert cached.stat().st_nlink == (toy_result / "series/plain.csv.gz").stat().st_nlink == 1
+    before = cached.read_bytes()
+    with open(toy_result / "series/plain.csv.gz", "ab") as file:
+        file.write(b"edited")
+    assert cached.read_bytes() == before
+
+
+WHOLE = {
+    "metrics.json gone": gone("metrics.json"),
+    "claims.json empty": text("claims.json", ""),
+    "config.yaml gone": gone("config.yaml"),
+    "a series gone": gone("series/fast.csv.gz"),
+    "run.json null": text("run.json", "null"),
+    "run.json cut short": short("run.json", 300),
+    "run.json of another": changed("run.json", lambda data: data.update(contents={"plain": "0"})),
+    "run.json of old": changed("run.json", lambda data: data.pop("contents")),
+    "of other packages": changed("run.json", lambda data: data["packages"].update(numpy="1.0")),
+}
+
+
+@pytest.mark.parametrize("kind", WHOLE)
+def test_a_result_that_is_not_whole_is_assembled_again(toy_result: Path, command: Command, kind: str) -> None:
+    before = {name: (toy_result / name).read_bytes() for name in ("metrics.json", "claims.json", "config.yaml")}
+    WHOLE[kind](toy_result)
+    status, said = command("run workers=1")
+    assert status == 0, said
+    assert "decay.plain:" not in said, "nothing is simulated"
+    assert {name: (toy_result / name).read_bytes() for name in before} == before
+
+
+# --------------------------------------------------------------------------------------------------------- the results
+
+BOMB = "a: &a [x, x, x, x, x, x, x, x, x]\n" + "".join(
+    f"{new}: &{new} [{', '.join(['*' + old] * 9)}]\n" for old, new in zip("abcdefghijk", "bcdefghijkl", strict=True)
+)
+DAMAGE: dict[str, tuple[Damage, str, str]] = {
+    "run empty": (text("run.json", ""), "check", "run.json cannot be used"),
+    "run a number": (text("run.json", "5"), "report", "run.json cannot be used"),
+    "run of no chapter": (changed("run.json", lambda d: d.update(chapter="77")), "draw", "'decay' in a chapter '77'"),
+    "run of no experiment": (changed("run.json", lambda d: d.update(experiment="x")), "check", "no experiment 'x'"),
+    "chapter a list": (changed("run.json", lambda d: d.update(chapter=[1])), "report", "chapter = "),
+    "cases a list": (changed("run.json", lambda d: d.update(cases=[1])), "check", "cases = '[1]' is of another kind"),
+    "a case null": (changed("run.json", lambda d: d["cases"].update(plain=None)), "draw", "cases.plain holds no dict"),
+    "no packages": (changed("run.json", lambda d: d.pop("packages")), "report", "it has no 'packages'"),
+    "metrics a list": (text("metrics.json", "[1]"), "check", "metrics.json cannot be used"),
+    "metric a text": (changed("metrics.json", lambda d: d.update({"decay.plain.final": "a"})), "check", "is no number"),
+    "metric foreign": (changed("metrics.json", lambda d: d.update({"x": 1})), "report", "x is no number of decay"),
+    "metric of 5000 digits": (text("metrics.json", '{"decay.a.b": ' + "9" * 5000 + "}"), "check", "metrics.json"),
+    "deep metrics": (text("metrics.json", "[" * 100_000), "check", "metrics.json cannot be used"),
+    "claims a dict": (text("claims.json", "{}"), "check", "it has no '0.id'"),
+    "a claim a text": (text("claims.json", '["x"]'), "report", "claims.json cannot be used (0 holds no dict)"),
+    "margin a text": (changed("claims.json", lambda d: d[0].update(margin="big")), "check", "0.margin is no number"),
+    "claims latin": (text("claims.json", b'["\xe9"]'), "check", "claims.json cannot be used"),
+    "config a list": (text("config.yaml", "[1]"), "draw", "config.yaml cannot be used (it holds no dict)"),
+    "config a bomb": (text("config.yaml", BOMB), "draw", "stands for more than a million values"),
+    "config of tabs": (text("config.yaml", "a:\n\tb: 1\n"), "draw", "config.yaml cannot be used"),
+    "config deep": (text("config.yaml", "[" * 3000), "draw", "config.yaml cannot be used"),
+    "series no gzip": (text("series/plain.csv.gz", "time,x"), "draw", "plain.csv.gz cannot be used"),
+    "series cut": (short("series/plain.csv.gz", 200), "draw", "plain.csv.gz cannot be used"),
+    "series of nothing": (text("series/plain.csv.gz", gzip.compress(b"")), "draw", "decay"),
+    "table cut": (text("tables/T90.1.csv", '"a'), "check", "T90.1.csv cannot be used"),
+    "table binary": (text("tables/T90.1.csv", b"\xff\x00\xfe"), "check", "T90.1.csv cannot be used"),
+    "table empty": (text("tables/T90.1.csv", ""), "report", "T90.1.csv cannot be used"),
+    "figure no SVG": (text("figures/fig_90_10.svg", b"\xff\xd8\x00"), "report", ""),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", DAMAGE)
+def test_damage_is_named(toy_result: Path, command: Command, kind: str) -> None:
+    damage, words, sentence = DAMAGE[kind]
+    damage(toy_result)
+    left = sorted(toy_result.rglob("*"))
+    status, said = command(words)
+    assert sentence in " ".join(said.split()), said
+    assert status in ((1, 2) if sentence else (0,))
+    assert sorted(toy_result.rglob("*")) == left
+
+
+def test_a_series_that_unpacks_without_end_is_refused(
+    toy_result: Path, command: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("dexrepro.report.damage.LARGEST", 1 << 22)
+    (toy_result / "series/plain.csv.gz").write_bytes(gzip.compress(bytes(1 << 23)))
+    assert "it unpacks to more than 4 MB" in command("draw")[1]
+
+
+def test_a_file_that_is_far_too_large_is_refused(toy_result: Path, command: Command) -> None:
+    with open(toy_result / "metrics.json", "wb") as file:
+        file.truncate(1 << 33)
+    assert "metrics.json cannot be used (it is larger than 64 MB)" in command("check")[1]
+
+
+@pytest.mark.parametrize(
+    "inside",
+    [
+        "<script>alert(1)</script>",
+        '<rect onload="alert(1)"/>',
+        '<a href="javascript:alert(1)"><text>x</text></a>',
+        "<foreignObject><iframe src='https://example.org'/></foreignObject>",
+        '<image href="https://example.org/x.png"/>',
+    ],
+)
+def test_a_received_picture_with_code_in_it_is_not_shown(toy_result: Path, command: Command, inside: str) -> None:
+    path = toy_result / "figures/fig_90_10.svg"
+    path.write_text(path.read_text().replace("</svg>", f"{inside}</svg>"))
+    assert command("report")[0] == 0
+    assert not list(Path("results/report").rglob("fig_90_10.svg"))
+    assert "fig_90_10.svg" not in Path("results/report/chapter90.html").read_text()
+
+
+# ---------------------------------------------------------------------------------- baselines, studies, configuration
+
+BASELINES = {
+    "empty": "",
+    "a list": "[]",
+    "cut short": '{"metrics": {"decay.plain.final": {"value"',
+    "other keys": '{"numbers": {}}',
+    "entries of another kind": '{"metrics": {"decay.plain.final": 3}, "claims": {}}',
+    "infinite tolerance": '{"metrics": {"decay.plain.final": {"value": 1, "rtol": 0, "atol": Infinity}}, "claims": {}}',
+    "absurd tolerance": '{"metrics": {"decay.plain.final": {"value": 1, "rtol": 50, "atol": 0}}, "claims": {}}',
+    "unequal columns": '{"metrics": {}, "claims": {}, "tables": {"T90.1": {"a": [1], "b": []}}}',
+}
+
+
+@pytest.mark.parametrize("kind", BASELINES)
+def test_a_damaged_baseline_is_named(toy_result: Path, command: Command, kind: str) -> None:
+    path = baselines.baseline_file("90", "decay")
+    path.write_text(BASELINES[kind])
+    status, said = command("check")
+    assert status == 2
+    assert f"{path} is no baseline" in "".join(said.split("\n"))
+
+
+HEAD = '{"chapter": "90", "experiment": "decay", "samples": 2, "failed": 0, "varied": {}, '
+STUDIES = {
+    "empty": "",
+    "a list": "[]",
+    "cut short": '{"chapter": "90", "exper',
+    "null claims": HEAD + '"claims": null}',
+    "a chapter of another kind": HEAD.replace('"90"', "[90]") + '"claims": {}}',
+    "other rows": HEAD + '"claims": {"C": 1}}',
+    "binary": "\x00\x01",
+}
+
+
+@pytest.mark.parametrize("kind", STUDIES)
+def test_a_damaged_study_is_named(toy_result: Path, command: Command, kind: str) -> None:
+    path = study.summary_file("decay", Path("results"))
+    path.parent.mkdir(parents=True)
+    path.write_text(STUDIES[kind])
+    status, said = command("report")
+    assert status == 2
+    assert f"{path} is no study" in said
+
+
+LINES = ["", "null", "5", "[]", "{}", '{"index": "x"}', '{"index": 0}', '{"index": 0, "digest": 5}', "\x00", "{" * 5000]
+
+
+def test_lines_of_a_study_that_are_none_do_not_count(toy_result: Path, command: Command) -> None:
+    path = study.summary_file("decay", Path("results")).with_suffix(".jsonl")
+    path.parent.mkdir(parents=True)
+    path.write_bytes("\n".join(LINES).encode() + b"\n\xff\xfe\n")
+    status, said = command("study chapter=90 samples=2 workers=1")
+    assert status == 0, said
+    assert [json.loads(line)["index"] for line in path.read_text().splitlines()] == [0, 1]
+
+
+def test_the_report_shows_the_parameters_of_its_runs_and_marks_what_is_out_of_date(
+    toy_result: Path, toy_book: Path, command: Command
+) -> None:
+    def page() -> str:
+        assert command("report")[0] == 0
+        return " ".join(Path("results/report/chapter90.html").read_text().split())
+
+    assert "<td>1.0</td>" in page()
+    assert "out of date" not in page()
+    path = toy_book / "chapter90/decay/config.yaml"
+    path.write_text(path.read_text().replace("start: 1.0", "start: 1.75"))
+    assert "1.75" not in page()
+    assert "out of date: plain and 4 more cases of another configuration or code than the present" in page()
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ("rate:\n\t1.0\n", "config.yaml"),
+        ("rate: [1, 2\n", "config.yaml"),
+        ("rate: 1.0\nrate: 2.0\n", "rate"),
+        ("- a\n", "config.yaml"),
+        ("5\n", "config.yaml"),
+        ("", "config.yaml"),
+        (b"rate: caf\xe9\n", "config.yaml"),
+    ],
+)
+def test_a_configuration_that_is_none_is_named(
+    toy: Path, toy_book: Path, command: Command, content: str | bytes, sentence: str
+) -> None:
+    text("config.yaml", content)(toy_book / "chapter90/decay")
+    status, said = command("run only=decay")
+    assert status == 2
+    assert sentence in said
