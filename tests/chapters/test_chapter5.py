@@ -97,22 +97,6 @@ def test_the_printed_sign_of_the_damping_teaches_another_movement(tmp_path):
     assert metrics["style_transformation.printed.z.final"] > 1.0
 
 
-@pytest.mark.parametrize(
-    ("experiment", "key", "word"),
-    [
-        ("letter_accuracy", "kernels.placement", "uniform"),
-        ("letter_accuracy", "training.solution", "best"),
-        ("style_transformation", "training.solution", "best"),
-        ("obstacle_crossing", "dmp.amplitude", "goal"),
-    ],
-)
-def test_a_word_that_no_option_has_is_refused_with_what_would_be_right(tmp_path, capsys, experiment, key, word):
-    cases = [f"~{experiment}.cases", f"+{experiment}.cases.one={{}}", f"{experiment}.{key}={word}"]
-    arguments = ["run", "chapter=5", f"only={experiment}", f"results={tmp_path}", "workers=1", "quiet=true", *cases]
-    assert main(arguments) != 0
-    assert f"{key} = {word} is not allowed: it must be " in capsys.readouterr().err
-
-
 def test_any_letter_may_be_the_base_and_any_number_of_kernels_be_given(tmp_path):
     style = [
         "style_transformation.hand.base=l", "style_transformation.hand.targets=[a,w,z]",

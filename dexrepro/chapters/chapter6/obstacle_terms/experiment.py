@@ -184,7 +184,7 @@ class _Counted(np.ndarray):
             result = np.asarray(result).view(_Counted)
         return result
 
-    def argmin(self, *args: Any, **options: Any) -> Any:  # type: ignore[override]
+    def argmin(self, *args: Any, **options: Any) -> Any:
         _Counted.operations += self.size
         return np.asarray(self).argmin(*args, **options)
 
@@ -222,7 +222,7 @@ def _operations(config: Config, block: Polygon) -> dict[str, int]:
             "operations": constrained(learning.law(config.cdmp)) + SPLINE + nominal,
             "operations_primitive": alone,
         }
-    gains = np.array([config.strength]), np.array([config.decay])
+    gains: tuple[Any, Any] = np.array([config.strength]), np.array([config.decay])
     counts = {"operations": coupled(_term(config.method, block, *gains)), "operations_primitive": alone}
     if config.method == "potential":
         counts["operations_point"] = coupled(
@@ -248,8 +248,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
     for width in config.bars.half_widths:
         metrics[f"bars_passed_{10 * width:.0f}mm"] = int(bars.passed[bars.half_width == width].sum())
-    best = recording.frames["tuned_bars"].groupby("half_width").passed.max()
-    metrics |= {f"bars_tuned_{10 * width:.0f}mm": int(count) for width, count in best.items()}
+    tuned = recording.frames["tuned_bars"]
+    for width in config.bars.wide:
+        metrics[f"bars_tuned_{10 * width:.0f}mm"] = int(tuned.passed[tuned.half_width == width].max())
     return metrics
 
 
