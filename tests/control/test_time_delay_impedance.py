@@ -180,3 +180,27 @@ def test_plain_impedance_holds_gravity_and_yields_to_a_push_by_its_gain():
     assert law(at(q, 0.0, still), Motion(q, still, still)).torque == pytest.approx(plant.gravity(q))
     torque = law(at(still, 0.0, still), Motion(np.array([0.01]), still, still)).torque
     assert torque - plant.gravity(np.zeros(1)) == pytest.approx(0.5 * 20.0 * 0.01)
+
+
+@pytest.mark.parametrize(
+    ("printed", "estimate", "impedance"), [((), 1, 1), (("second_line",), 1, -1), (("first_line",), -1, -1)]
+)
+def test_every_form_has_its_signs_of_the_estimate_and_of_the_impedance(printed, estimate, impedance):
+    """Eqs. (7.38), (7.39): base + sign K_imp r + sign (tau - M q'' - G)(t - L)."""
+    model = Axis(weight=0.3)
+    law = TimeDelayImpedance(model, DT, 5.0, ConstantImpedance(0.4), printed=printed)
+    desired = Motion(np.array([0.2]), np.array([0.1]), np.array([0.7]))
+    torques = []
+    for q, dq in ((0.1, 0.3), (0.15, 0.4)):
+        e, de = 0.2 - q, 0.1 - dq
+        expected = model.mass * (0.7 + 5.0 * de) + 0.3 * np.cos(q) + impedance * 0.4 * (de + 5.0 * e)
+        if torques:
+            expected += estimate * (torques[0] - model.mass * (0.4 - 0.3) / DT - 0.3 * np.cos(0.1))
+        torques.append(law(at(np.array([q]), 0.0, np.array([dq])), desired).torque.item())
+        assert torques[-1] == pytest.approx(expected)
+
+
+def test_a_relaxed_muscle_adds_nothing_to_gravity():
+    law = GravityImpedance(Axis(weight=0.3), 5.0, MuscleImpedance(2.0))
+    torque = law(at(np.array([0.1]), 0.0, np.array([0.3])), Motion(np.array([0.2]), np.zeros(1), np.zeros(1))).torque
+    assert torque == pytest.approx([0.3 * np.cos(0.1)])
