@@ -41,8 +41,8 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     still = {
-        "still_printed": "printed",
         "still_feedforward": "book",
+        "still_printed": "printed",
         "still_consistent": "extra1",
         "still_filter": "rival",
     }
