@@ -48,12 +48,14 @@ def baseline_file(chapter: str, experiment: str) -> Path:
 class Baseline:
     """What is stored of one experiment: metrics as ``{name: {value, rtol, atol}}``, verdicts by claim, tables by id.
 
-    tables: None where none have been stored yet; then none are compared.
+    tables: None where none have been stored yet; then none are compared. free: columns ("T4.D/step [µs]") that may
+    differ, by the reason why; they are set by hand and survive updates.
     """
 
     metrics: dict[str, dict[str, Any]] = field(default_factory=dict)
     claims: dict[str, str] = field(default_factory=dict)
     tables: dict[str, dict[str, list[Any]]] | None = None
+    free: dict[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(cls, chapter: str, experiment: str) -> Baseline:
@@ -233,7 +235,7 @@ def _compare_tables(report: ChapterReport, folder: Path, stored: Baseline) -> No
         if list(old) != list(new) or len(next(iter(old.values()), [])) != len(next(iter(new.values()), [])):
             report.tables_changed.append(f"{name} has other rows or columns")
             continue
-        for column in old:
+        for column in (column for column in old if f"{name}/{column}" not in stored.free):
             size = max((abs(cell) for cell in old[column] if isinstance(cell, int | float)), default=0.0)
             for row, (before, after) in enumerate(zip(old[column], new[column], strict=True), 1):
                 if not _same_cell(after, before, size, stored.metrics):
@@ -300,7 +302,8 @@ def update_chapter(
             for name, value in metrics.items()
         }
         verdicts = {claim["id"]: claim["verdict"] for claim in read_json(plan.folder / "claims.json")}
-        new[plan.experiment] = Baseline(entries, verdicts, tables_of(plan.folder / "tables"))
+        free = old[plan.experiment].free
+        new[plan.experiment] = Baseline(entries, verdicts, tables_of(plan.folder / "tables"), free)
     changed = {
         key: (before, new[name].claims[key])
         for name, stored_baseline in old.items()

@@ -13,7 +13,7 @@ import tempfile
 import uuid
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -100,6 +100,7 @@ def plan_chapter(
 
     write: see that results can be written; else nothing is made.
     """
+    _code_digest.cache_clear()
     if chapter not in (*chapters.numbers(), chapters.OWN):
         raise InputError(f"unknown chapter '{chapter}'; chapters: {', '.join(chapters.numbers())}")
     config = composed if composed is not None else compose_chapter(chapter, overrides, extra_dir)
@@ -180,7 +181,7 @@ def _plan(
     for case, values in cases.items():
         values = {**values, "perturbation": perturbation, "seed": seed, "case": case}
         own = own_digest(values)
-        content = digest_of([name, values, own, code_digest(experiment, values)])
+        content = content_of(experiment, values, own)
         cached = results / ".cache" / name / f"{case}-{digest_of([content, versions])[:16]}"
         jobs.append(Job(chapter, name, case, values, seed, content, own, str(cached), bool(config["gui"]),
                         config["case_timeout"]))  # fmt: skip
@@ -206,12 +207,13 @@ def _differs(
 
 
 def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[Experiment]:
-    """The experiments of a chapter named by ``only`` and those that make ``figure`` (a figure or table id)."""
+    """The experiments of a chapter named by ``only``, which may name others' too, that make ``figure`` (or table)."""
     experiments = chapters.load(chapter).experiments
     names = [experiment.name for experiment in experiments]
     wanted = names if only is None else [only] if isinstance(only, str) else list(only)
+    everywhere = {e.name for number in chapters.numbers() for e in chapters.load(number).experiments}
     for name in wanted:
-        if name not in names:
+        if name not in names and (name not in everywhere or not set(wanted) & set(names)):
             raise InputError(f"unknown experiment '{name}' in chapter {chapter}: {nearest(str(name), names)}")
     selected = [experiment for experiment in experiments if experiment.name in wanted]
     if figure is None:
@@ -242,13 +244,21 @@ def writable(results: Path) -> Path:
 # ------------------------------------------------------------------------------------------- what a result depends on
 
 
+def content_of(experiment: Experiment, values: Mapping[str, Any], own: str | None = None) -> str:
+    """What the numbers of a case depend on but for the versions of packages: values, code, and files of the user."""
+    return digest_of([experiment.name, values, own or own_digest(values), code_digest(experiment, values)])
+
+
 def code_digest(experiment: Experiment, values: Mapping[str, Any]) -> str:
     """Hash of the code of this package that a case uses: its simulation and the laws that its values name."""
-    module = f"{experiment.package}.experiment"
-    roots = [(module, name) for name in ("simulate", "measure", "RATE")]
+    return _code_digest(experiment.package, frozenset(text for text in targets(values) if text.startswith("dexrepro.")))
+
+
+@lru_cache(maxsize=256)  # emptied before each planning: a session may edit files
+def _code_digest(package: str, named: frozenset[str]) -> str:
+    roots = [(f"{package}.experiment", name) for name in ("simulate", "measure", "RATE")]
     roots += [("dexrepro.case", "run"), ("dexrepro.case", "live"), ("dexrepro.recordings", "save_recording")]
-    named = (closure.target(text) for text in targets(values))
-    return closure.digest([*roots, *(name for name in named if name[0].startswith("dexrepro."))])
+    return closure.digest([*roots, *(closure.target(text) for text in named)])
 
 
 def presentation(experiment: Experiment) -> str:

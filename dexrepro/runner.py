@@ -29,6 +29,7 @@ from dexrepro.recordings import load_recording, save_recording
 from dexrepro.storage import (
     claimed,
     copy,
+    finite,
     locked,
     read_json,
     read_yaml,
@@ -175,8 +176,6 @@ def assemble(plan: Plan) -> list[Job]:
     nested: dict[str, Metrics] = {name: data["metrics"] for name, data in cases.items()}
     configs = {name: data["config"] for name, data in cases.items()}
     config = Config.of({**plan.block, "cases": configs})
-    if not _of_some_cases(plan.differs):  # a number over the cases is one over all of them
-        summarise(experiment, nested, config)
     with whole_folder(plan.folder) as folder:
         (folder / "series").mkdir()
         for job in plan.jobs:
@@ -206,7 +205,7 @@ def _keep_animations(old: Path, new: Path) -> None:
 def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config) -> None:
     """Add the numbers over several cases to nested metrics."""
     if function := experiment.function("summarise"):
-        nested[SUMMARY] = function(nested, config)
+        nested[SUMMARY] = finite(function(nested, config))
 
 
 @contextlib.contextmanager
@@ -224,16 +223,20 @@ def _of_some_cases(differs: Sequence[str]) -> bool:
 
 
 def present(chapter: str, experiment: Experiment, folder: Path) -> None:
-    """Evaluate claims, draw figures and write tables in a result folder, from its files alone."""
+    """Numbers over several cases, claims, tables and figures of a result folder, from its files alone."""
     from dexrepro.report import style
 
     run = read_json(folder / "run.json")
-    flat_metrics = read_json(folder / "metrics.json")
     config = Config.of(read_yaml(folder / "config.yaml"))
     nested: dict[str, Metrics] = {case: {} for case in run["cases"]}
-    for name, value in flat_metrics.items():
+    for name, value in read_json(folder / "metrics.json").items():
         _, first, *rest = name.split(".", 2)
-        nested.setdefault(first if rest else SUMMARY, {})[rest[0] if rest else first] = value
+        if rest and first in nested:
+            nested[first][rest[0]] = value
+    if not _of_some_cases(run["differs"]):  # a number over the cases is one over all of them
+        summarise(experiment, nested, config)
+    flat_metrics = flat(experiment.name, nested)
+    write_json(folder / "metrics.json", flat_metrics)
     recordings = {
         case: load_recording(folder / "series", case, entry["status"]) for case, entry in run["cases"].items()
     }
@@ -252,8 +255,9 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
                 style.save(figure, folder / "figures", identifier)
 
 
-def redraw(chapter: str, experiment: Experiment, target: Path) -> None:
+def redraw(chapter: str, name: str, target: Path) -> None:
     """Present again a result from its files alone; where that fails, it stays as it was."""
+    experiment = chapters.load(chapter).experiment(name)
     with whole_folder(target) as folder:
         shutil.copytree(target, folder, dirs_exist_ok=True, copy_function=copy)
         write_json(folder / "run.json", read_json(target / "run.json") | {"presentation": presentation(experiment)})
@@ -326,17 +330,21 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
         remove_leftovers(parent)
     waiting: dict[str, set[str]] = {}
     todo: list[Job] = []
+    again: list[Plan] = []
     for plan in plans:
         if not force and up_to_date(plan):
             outcome.folders[plan.experiment] = plan.folder
             continue
         missing = [job for job in plan.jobs if force or stored_case(job) is None]
+        if missing and not force and up_to_date(plan, presented=False):  # it has what the cache has lost
+            again.append(plan)
+            continue
         for job in missing:
             if Path(job.folder).exists() and not force:
                 progress.note(f"{job.name} is damaged in {Path(job.folder).parent}: run again")
         waiting[plan.experiment] = {job.case for job in missing}
         todo += missing
-    if not waiting:
+    if not waiting and not again:
         return outcome
     by_name = {plan.experiment: plan for plan in plans}
     # An experiment of few cases has long ones: they begin, and the short ones of the others fill the gaps at the end.
@@ -350,6 +358,8 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
                 pool.add(job, execute if force else complete, job, timeout=job.timeout)
             for name in (name for name, cases in waiting.items() if not cases):
                 pool.add(by_name[name], assemble, by_name[name])
+            for plan in again:
+                pool.add(plan, redraw, plan.chapter, plan.experiment, plan.folder)
             progress.begin(len(todo))
             repeated: set[str] = set()
             for task, value in pool.results():
@@ -381,11 +391,14 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     return outcome
 
 
-def up_to_date(plan: Plan) -> bool:
-    """Whether the result of a plan is there, whole, and made of the present values, code and packages."""
+def up_to_date(plan: Plan, presented: bool = True) -> bool:
+    """Whether the result of a plan is there, whole, and made of the present values, code and packages.
+
+    presented: ask that its claims, tables and figures are of the present code too.
+    """
     try:
         run = read_json(plan.folder / "run.json")
-        same = run["contents"] == plan.contents and run["presentation"] == plan.presentation
+        same = run["contents"] == plan.contents and not (presented and run["presentation"] != plan.presentation)
         same = same and run["version"] == __version__ and run["differs"] == plan.differs
         same = same and all(run["packages"][name] == version(name) for name in NUMERICAL)
         files = ("metrics.json", "claims.json", "config.yaml")

@@ -186,3 +186,12 @@ def test_null_agrees_with_null_alone() -> None:
     assert baselines.agrees(None, entry)
     assert not baselines.agrees(0.0, entry)
     assert not baselines.agrees(None, {"value": 0.0, "rtol": 1.0, "atol": 1.0})
+
+
+def test_a_column_that_is_free_may_differ_and_stays_free(stored: Path) -> None:
+    edit(stored, lambda data: data["tables"]["T90.1"]["final"].__setitem__(0, 7.0))
+    assert baselines.check_chapter("90", RESULTS).tables_changed
+    edit(stored, lambda data: data.update(free={"T90.1/final": "the wall time of a machine"}))
+    assert baselines.check_chapter("90", RESULTS).ok
+    baselines.update_chapter("90", RESULTS, accept=[], workers=1)
+    assert read_json(stored)["free"] == {"T90.1/final": "the wall time of a machine"}

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -182,6 +184,19 @@ def test_what_was_edited_decides_what_is_done_again(
     assert status == 0, said
     assert ("decay.plain:" in said) == simulated
     assert ((toy_result / "run.json").stat().st_mtime_ns > before) == presented
+
+
+def test_a_result_is_presented_anew_where_the_cache_is_gone(toy_result: Path, toy_book: Path, command: Command) -> None:
+    shutil.rmtree("results/.cache")
+    edit(toy_book / "chapter90/decay/experiment.py", '"ratio": ', '"ratio": 2 * ')
+    edit(toy_book / "chapter90/decay/claims.py", "nothing grows", "nothing ever grows")
+    before = json.loads((toy_result / "metrics.json").read_text())
+    status, said = command("run workers=1")
+    assert status == 0, said
+    assert "decay.plain:" not in said
+    assert "nothing ever grows" in (toy_result / "claims.json").read_text()
+    after = json.loads((toy_result / "metrics.json").read_text())
+    assert after == before | {"decay.ratio": 2 * before["decay.ratio"]}
 
 
 def test_presentation_follows_the_style_of_figures(edited: Callable[[str, str, str], None]) -> None:

@@ -97,3 +97,10 @@ def test_the_drift_of_the_jacobian_is_part_of_the_acceleration():
     position, velocity = np.array([0.3, -0.4]), np.array([0.7, 0.2])
     _, drift = law._kinematics(position, velocity, axes=2)
     assert drift == pytest.approx(-np.sin(position) * velocity**2, rel=1e-8)
+
+
+def test_without_a_disturbance_to_fear_the_gain_is_the_linear_quadratic_one():
+    """Double integrator, gamma -> infinity: k1 = sqrt(q1 / r), k2 = sqrt(q2 / r + 2 k1)."""
+    stiffness = np.sqrt(900.0 / 4.0)
+    expected = (stiffness, np.sqrt(50.0 / 4.0 + 2 * stiffness))
+    assert hinfinity_gain((900.0, 50.0), effort=4.0, attenuation=1e6) == pytest.approx(expected)

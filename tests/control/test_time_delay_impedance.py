@@ -204,3 +204,11 @@ def test_a_relaxed_muscle_adds_nothing_to_gravity():
     law = GravityImpedance(Axis(weight=0.3), 5.0, MuscleImpedance(2.0))
     torque = law(at(np.array([0.1]), 0.0, np.array([0.3])), Motion(np.array([0.2]), np.zeros(1), np.zeros(1))).torque
     assert torque == pytest.approx([0.3 * np.cos(0.1)])
+
+
+def test_the_plain_rival_has_the_same_error():
+    law = GravityImpedance(Axis(weight=0.3), 5.0, ConstantImpedance(0.4))
+    torque = law(
+        at(np.array([0.1]), 0.0, np.array([0.3])), Motion(np.array([0.2]), np.array([0.7]), np.zeros(1))
+    ).torque
+    assert torque == pytest.approx([0.3 * np.cos(0.1) + 0.4 * (0.7 - 0.3 + 5.0 * (0.2 - 0.1))])

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import ast
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from conftest import ROOT, Command, whole
+
+from dexrepro import chapters
 
 pytestmark = pytest.mark.usefixtures("bounded")
 HUGE = "9" * 400
@@ -162,3 +165,12 @@ def test_every_text_file_is_utf8_by_decree() -> None:
             ):
                 left.append(f"{path.name}:{node.lineno}")
     assert not left
+
+
+def test_check_takes_experiments_of_several_chapters(toy_result: Path, toy_book: Path, command: Command) -> None:
+    shutil.copytree(toy_book / "chapter90", toy_book / "chapter91")
+    (toy_book / "chapter91/decay").rename(toy_book / "chapter91/other")
+    chapters.forget()
+    assert "no results of other" in command("check only=other,decay")[1]
+    assert "unknown experiment 'othr'" in command("check only=[othr,decay]")[1]
+    assert "chapter 90:" in command("check only=decay,needs_more")[1]

@@ -128,7 +128,8 @@ class Reach:
         torque, damping, _ = self.law.command(Measured(sense.time, q, dq, self.observed), desired)
         torque = torque + config.model.gravity_compensation * gravity
         if config.null_space.enabled:
-            torque += projector @ self._subtask(state, centre)
+            subtask = self._subtask(state, centre)
+            torque += projector @ subtask if config.null_space.get("projected", True) else subtask
         if config.null_space.get("consistent_damping") and damping is not None:
             damping = consistent_damping(damping, jacobian, self._inverse, projector)
         return Command(torque, damping)

@@ -141,4 +141,12 @@ ERRATA = (
         "Chosen as stated in the configuration.",
         evidence=tuple(f"{S}.{case}.rmse_mm" for case in ("broad20", "rbf10", "common_rbf10", "fuzzy", "common_fuzzy")),
     ),
+    Erratum(
+        "E4.23",
+        "4.6",
+        "gap",
+        "Whether 58 and 72 nodes are those added in phases I and II, or those there are after each, is not said.",
+        "Both are given: after phase I, after II, and by their difference those added in II.",
+        evidence=(f"{P}.reuse.nodes_phase1", f"{P}.reuse.nodes_phase2"),
+    ),
 )

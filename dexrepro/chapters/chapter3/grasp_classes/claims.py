@@ -21,9 +21,11 @@ CLAIMS = (
         "3.C",
         "Grasps outside the safety region can be told from those inside: at most a tenth of them passes for safe.",
         less(f"{CLASSES}.wide.unsafe_called_safe", 0.1),
+        control=less(f"{CLASSES}.narrow.unsafe_called_safe", 0.1),
         where="3.4.2.2",
-        note="Needs a patch that reaches beyond the safety margin (C3.20b) and enough scenes: 200 were taken "
-        "after 150 had let 7 of 60 pass.",
+        note="The control is a patch that does not reach beyond the safety margin. It needs enough scenes, too: 200 "
+        "were taken after 150 had let 7 of 60 pass, and where what is not printed varies it holds in about half of "
+        "the draws (study).",
     ),
     Claim(
         "C3.20b",

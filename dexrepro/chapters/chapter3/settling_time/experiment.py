@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -48,7 +49,8 @@ class ErrorDynamics:
         self.model, self.home, self.config, self.steps = RigidBodyModel(self.arm), posture("right"), config, 0
 
     def settle(self, error: Array, first: Sequence[float], second: Sequence[float]) -> tuple[float, float, float]:
-        """Time [s] until V' is below its bound, largest relative growth of V' in a step, largest torque [N m]."""
+        """Time [s] until V' is below its bound (nan: not within the run), its growth in a step, largest
+        torque [N m]."""
         config, model, h = self.config, self.model, self.config.step
         e1 = error.copy()
         e2 = secant(e1, first, *config.powers) * e1  # the arm is at rest, so e2 = -x_2d
@@ -64,9 +66,24 @@ class ErrorDynamics:
                 return k * h, growth, torque
             torque = max(torque, float(np.abs(e1 + damping * e2).max()))
             e1 = (e1 + h * e2) / (1.0 + h * slope)
-            push = mass @ e2 - h * (e1 + self._coriolis(q, dq, e2))
-            e2 = np.linalg.solve(mass + h * np.diag(damping), push)
-        return float(config.duration), growth, torque
+            e2 = self._advance(mass, e1, e2, damping, self._coriolis(q, dq, e2))
+        return math.nan, growth, torque
+
+    def _advance(self, mass: Array, e1: Array, e2: Array, damping: Array, coriolis: Array) -> Array:
+        """e2 after a step; joints that would need more than the arm's torque limits get those, where they count."""
+        h, push = self.config.step, mass @ e2 - self.config.step * coriolis
+        over = np.zeros(len(e1), dtype=bool)
+        torque = limit = np.array(self.arm.effort)
+        while True:
+            matrix = mass + h * np.diag(np.where(over, 0.0, damping))
+            new: Array = np.linalg.solve(matrix, push - h * np.where(over, np.sign(torque) * limit, e1))
+            if not self.config.limited:
+                return new
+            torque = np.where(over, torque, e1 + damping * new)
+            beyond = over | (np.abs(torque) > limit)
+            if (beyond == over).all():
+                return new
+            over = beyond
 
     def _coriolis(self, q: Array, dq: Array, e2: Array) -> Array:
         """C(q, dq) e2 (Christoffel's C) from the quadratic form c(v) = C(q, v) v."""
@@ -89,21 +106,26 @@ def _tuned(plant: ErrorDynamics, config: Config, directions: Array) -> tuple[lis
     for f, g in itertools.product(config.sharing, repeat=2):
         first, second = [config.first[0] * f, *config.first[1:]], [config.second[0] * g, *config.second[1:]]
         runs = [plant.settle(e, first, second) for e in errors]
-        if max(run[2] for run in runs) <= limit * (1 + 1e-9) and max(run[0] for run in runs) < best:
-            best, found = max(run[0] for run in runs), (first, second)
+        longest = float(np.max([run[0] for run in runs]))
+        if max(run[2] for run in runs) <= limit * (1 + 1e-9) and longest < best:
+            best, found = longest, (first, second)
     return found
+
+
+def _known(time: float) -> float | None:
+    return None if math.isnan(time) else time
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
     table, law = recording.frames["settling"], recording.frames["laws"].iloc[0]
-    worst = table.groupby("error")["time"].max()
-    metrics: Metrics = {f"settling_{size:g}".replace(".", "p"): float(worst[size]) for size in config.errors}
-    metrics["settling_max"] = float(worst.max())
+    worst = {size: float(np.max(times.to_numpy())) for size, times in table.groupby("error")["time"]}
+    metrics: Metrics = {f"settling_{size:g}".replace(".", "p"): _known(worst[size]) for size in config.errors}
+    metrics["settling_max"] = _known(float(np.max(list(worst.values()))))
     metrics["growth"] = float(table.growth.max())
     metrics["torque_1"] = float(table[table.error == 1.0].torque.max())
     metrics["k11"], metrics["k21"] = float(law.k11), float(law.k21)
     metrics["inertia_max"] = float(law.inertia_max)
-    if min(config.first[1:] + config.second[1:]) > 0 and not config.tune:
+    if min(config.first[1:] + config.second[1:]) > 0 and not config.tune and not config.limited:
         constants: Any = dict(inertia=metrics["inertia_max"], joints=7, share=config.gamma)
         gains = (config.first, config.second, config.powers)
         metrics["bound"] = settling_bound(*gains, **constants)
