@@ -190,10 +190,23 @@ def _differs(
     for case, values in cases.items():
         check_types(values, book.get(case, next(iter(book.values()))), name)
         check_lengths(values, book.get(case, next(iter(book.values()))), name)
-    differs = differences(block, resolved_block(shipped, name))
-    differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
-    differs = differs or differences(cases, book)  # a shared value that only a case refers to
-    return differs + differences({"seed": config["seed"]}, {"seed": shipped["seed"]})
+    own = {_key(text): text for text in differences(block, resolved_block(shipped, name))}
+    listed = differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
+    reached: dict[str, str] = {}  # what changes in a case, by its key there; the first case that has it
+    for text in differences(cases, book):
+        case, _, key = _key(text).partition(".")
+        if f"cases.{case}.{key}" not in map(_key, listed):
+            reached.setdefault(key, text)
+    for key in own.keys() - reached.keys() if "" not in reached else ():
+        own[key] += ", without effect: every case sets its own"
+    # A shared value that only a case refers to is named where that case has it.
+    beside = [text for key, text in reached.items() if key and key not in own]
+    return [*own.values(), *listed, *beside, *differences({"seed": config["seed"]}, {"seed": shipped["seed"]})]
+
+
+def _key(difference: str) -> str:
+    """The key that a line of ``differences`` is about."""
+    return difference.partition("=")[0].removesuffix(" left out")
 
 
 def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[Experiment]:

@@ -26,7 +26,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     target = pen.reference(pen.on_paper(path), config.arm.step)
     nominal = pen.model(config)
     centres = pen.node_centres(config, target, config.network.nodes, rng("nodes"))
-    learner = pen.network(config, centres) if config.network.enabled else None
+    learner = pen.network(config, centres, target) if config.network.enabled else None
     recording = pen.track(config, target, build(config.law, model=nominal, network=learner), nominal)
     if config.picture == config.hand.letter:
         recording.images["picture"] = _picture(recording, config)

@@ -132,6 +132,7 @@ LAWS = (
     *(
         "letter_w",
         "tuned",
+        "integrator",
         "no_network",
         "no_barrier",
         "no_network_no_barrier",
@@ -140,7 +141,16 @@ LAWS = (
         "pd_tuned",
         "pd_stiffest",
     ),
-    *("printed", "printed_no_robust", "printed_sign", "printed_gain", "printed_robust", "sign_only", "sign_robust"),
+    *(
+        "printed",
+        "printed_forgetting",
+        "printed_no_robust",
+        "printed_sign",
+        "printed_gain",
+        "printed_robust",
+        "sign_only",
+        "sign_robust",
+    ),
 )
 SENSITIVITY = (
     *("letter_w", "light_model", "heavy_model", "rough_paper", "near_edge", "outside", "encoders", "encoders_slow"),
