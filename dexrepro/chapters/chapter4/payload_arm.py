@@ -73,14 +73,7 @@ class Pilot:
     def state(self) -> list[float]:
         """Error (3), usage (3), E, nodes, largest feature, for the columns of ``STATE``."""
         told = {**UNTOLD, **report(self.law)}
-        return [
-            *self.drive.error,
-            *told["usage"],
-            told["share"],
-            told["nodes"],
-            told["activation"],
-            told["feature_energy"],
-        ]
+        return [*self.drive.error, *told["usage"], told["share"], told["nodes"], told["activation"]]
 
 
 #: What a law is taken to report where it reports nothing.

@@ -48,7 +48,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     drawn = {}
     if "reuse" in recordings and recordings["reuse"].images:
         drawn["4.11"] = _draw_phases(recordings["reuse"], config)
-    if {"reuse", "rbf_wide"} <= set(recordings):
+    if {"reuse", "rbf_wide", "constant"} <= set(recordings):
         drawn["4.12"] = _draw_errors(recordings, metrics, config)
     return drawn
 
@@ -90,10 +90,11 @@ def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) ->
         panel.set_ylim(-220, 220)
     style.legend_below(figure, {label: style.LINES[line] for _, label, line in shown})
     _draw_bars(figure, axes, metrics)
-    found = [
-        f"{BARS[case][0]} {metrics[case]['rmse_mm']:.1f}" for case in BARS if case in ("reuse", "rbf_wide", "constant")
-    ]
-    style.title(figure, f"Mean error [mm]: {', '.join(found)}; the bound is grey")
+    fixed, constant, broad = (metrics[case]["rmse_mm"] for case in ("rbf_wide", "constant", "reuse"))
+    style.title(
+        figure,
+        f"Mean error {broad:.1f} mm broad, {fixed:.1f} mm fixed, {constant:.1f} mm for one node (bound: grey)",
+    )
     return figure
 
 
