@@ -471,14 +471,14 @@ def render_command(options: argparse.Namespace) -> int:
 
 
 def study_command(options: argparse.Namespace) -> int:
-    """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=200] [hours=H] [jobs=N hydra/launcher=...]``."""
+    """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=N] [hours=H] [jobs=N hydra/launcher=...]``."""
     from dexrepro import study
     from dexrepro.selection import selected
 
     if any(text.startswith(("jobs=", "hydra")) for text in options.selection):
         return _study_jobs(options)
     numbers, only, results, workers, values = selected(options.selection, STUDY)
-    samples, hours = _samples(values.get("samples", "200")), _hours(values.get("hours"))
+    samples, hours = _samples(values.get("samples")), _hours(values.get("hours"))
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
             try:
@@ -490,11 +490,10 @@ def study_command(options: argparse.Namespace) -> int:
     return OK
 
 
-def _samples(text: str) -> int:
-
-    if not text.isdecimal() or int(text) < 1:
-        raise InputError(f"samples = {text} is not allowed: it must be a whole number of 1 or greater")
-    return int(text)
+def _samples(text: str | None) -> int | None:
+    if text is not None and not (text.isdecimal() and 1 <= int(text) <= 1024):
+        raise InputError(f"samples = {text} is not allowed: it must be a whole number of 1 or greater, 1024 at most")
+    return int(text) if text else None
 
 
 def _hours(text: str | None) -> float | None:
@@ -517,7 +516,7 @@ def _study_jobs(options: argparse.Namespace) -> int:
     launcher = [f"{key}={value}" for key, value in values.items() if key.startswith("hydra")]
     words = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
     numbers, only, folder, _, _ = selected(words, STUDY)
-    _samples(values.get("samples", "200")), _hours(values.get("hours"))
+    _samples(values.get("samples")), _hours(values.get("hours"))
     names = [name for number in numbers for name in study.experiments_of(number, only, values.get("claim"))]
     selection = ",".join(json.dumps(text) for text in words)
     results = [text for text in words if text.startswith("results=")]
@@ -548,7 +547,9 @@ def _print_study(name: str, path: Path, results: Path) -> None:
     for claim, row in summary["claims"].items():
         interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
         most = f", follows {row['parameter']} most" if row["parameter"] else ""
-        out.print(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}){most}", markup=False)
+        out.print(
+            f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}), {row['word']}{most}", markup=False
+        )
 
 
 def completion_command(options: argparse.Namespace) -> int:

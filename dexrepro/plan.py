@@ -13,7 +13,7 @@ import tempfile
 import uuid
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -100,6 +100,7 @@ def plan_chapter(
 
     write: see that results can be written; else nothing is made.
     """
+    _code_digest.cache_clear()
     if chapter not in (*chapters.numbers(), chapters.OWN):
         raise InputError(f"unknown chapter '{chapter}'; chapters: {', '.join(chapters.numbers())}")
     config = composed if composed is not None else compose_chapter(chapter, overrides, extra_dir)
@@ -180,7 +181,7 @@ def _plan(
     for case, values in cases.items():
         values = {**values, "perturbation": perturbation, "seed": seed, "case": case}
         own = own_digest(values)
-        content = digest_of([name, values, own, code_digest(experiment, values)])
+        content = content_of(experiment, values, own)
         cached = results / ".cache" / name / f"{case}-{digest_of([content, versions])[:16]}"
         jobs.append(Job(chapter, name, case, values, seed, content, own, str(cached), bool(config["gui"]),
                         config["case_timeout"]))  # fmt: skip
@@ -199,10 +200,23 @@ def _differs(
     for case, values in cases.items():
         check_types(values, book.get(case, next(iter(book.values()))), name)
         check_lengths(values, book.get(case, next(iter(book.values()))), name)
-    differs = differences(block, resolved_block(shipped, name))
-    differs += differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
-    differs = differs or differences(cases, book)  # a shared value that only a case refers to
-    return differs + differences({"seed": config["seed"]}, {"seed": shipped["seed"]})
+    own = {_key(text): text for text in differences(block, resolved_block(shipped, name))}
+    listed = differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
+    reached: dict[str, str] = {}  # what changes in a case, by its key there; the first case that has it
+    for text in differences(cases, book):
+        case, _, key = _key(text).partition(".")
+        if f"cases.{case}.{key}" not in map(_key, listed):
+            reached.setdefault(key, text)
+    for key in own.keys() - reached.keys() if "" not in reached else ():
+        own[key] += ", without effect: every case sets its own"
+    # A shared value that only a case refers to is named where that case has it.
+    beside = [text for key, text in reached.items() if key and key not in own]
+    return [*own.values(), *listed, *beside, *differences({"seed": config["seed"]}, {"seed": shipped["seed"]})]
+
+
+def _key(difference: str) -> str:
+    """The key that a line of ``differences`` is about."""
+    return difference.partition("=")[0].removesuffix(" left out")
 
 
 def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[Experiment]:
@@ -243,13 +257,21 @@ def writable(results: Path) -> Path:
 # ------------------------------------------------------------------------------------------- what a result depends on
 
 
+def content_of(experiment: Experiment, values: Mapping[str, Any], own: str | None = None) -> str:
+    """What the numbers of a case depend on but for the versions of packages: values, code, and files of the user."""
+    return digest_of([experiment.name, values, own or own_digest(values), code_digest(experiment, values)])
+
+
 def code_digest(experiment: Experiment, values: Mapping[str, Any]) -> str:
     """Hash of the code of this package that a case uses: its simulation and the laws that its values name."""
-    module = f"{experiment.package}.experiment"
-    roots = [(module, name) for name in ("simulate", "measure", "RATE")]
+    return _code_digest(experiment.package, frozenset(text for text in targets(values) if text.startswith("dexrepro.")))
+
+
+@lru_cache(maxsize=256)  # emptied before each planning: a session may edit files
+def _code_digest(package: str, named: frozenset[str]) -> str:
+    roots = [(f"{package}.experiment", name) for name in ("simulate", "measure", "RATE")]
     roots += [("dexrepro.case", "run"), ("dexrepro.case", "live"), ("dexrepro.recordings", "save_recording")]
-    named = (closure.target(text) for text in targets(values))
-    return closure.digest([*roots, *(name for name in named if name[0].startswith("dexrepro."))])
+    return closure.digest([*roots, *(closure.target(text) for text in named)])
 
 
 def presentation(experiment: Experiment) -> str:

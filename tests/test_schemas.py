@@ -65,7 +65,7 @@ STORED = {"value": 1, "rtol": 0, "atol": 0}
         ("metrics", {"decay.plain.end": 1.0}, ["decay.plain.end"], "1.0"),
         ("metrics", {"decay.plain.end": None}, ["no name of a metric"], 1.0),
         ("baseline", {"metrics": {"a.b": STORED}, "claims": {}}, ["metrics", "a.b", "rtol"], -1),
-        ("sample", {"index": 0, "digest": "", "values": {}, "margins": {}, "error": None}, ["index"], -1),
+        ("sample", {"index": 0, "values": {}, "cases": {"a": {"content": "", "seconds": 1}}}, ["index"], -1),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_noticed(name: str, data: dict[str, Any], keys: list[str], wrong: Any) -> None:

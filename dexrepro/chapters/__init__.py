@@ -1,8 +1,8 @@
 """What experiments there are: the chapters of the book and those a user adds, all found by their folders.
 
-A chapter is a folder of experiments with, where it has them, ``TITLE`` and ``ORDER`` in its ``__init__.py``,
-``errata.py`` and ``claims.py`` (claims that no experiment can test); an experiment is a folder that holds
-``experiment.py``, see :class:`dexrepro.experiment.Experiment`. Folders outside the package are named by
+A chapter is a folder of experiments with, where it has them, ``TITLE``, ``ORDER`` and ``FAIRNESS`` in its
+``__init__.py``, ``errata.py`` and ``claims.py`` (claims that no experiment can test); an experiment is a folder that
+holds ``experiment.py``, see :class:`dexrepro.experiment.Experiment`. Folders outside the package are named by
 ``--experiments`` or the environment variable ``DEXREPRO_EXPERIMENTS``. Such a folder holds chapters, or is itself one;
 it adds to the book, or, with a ``book.yaml`` (title, authors) in it, takes its place.
 """
@@ -43,7 +43,10 @@ class Book:
 
 @dataclass(frozen=True)
 class Chapter:
-    """What a chapter's folder offers; claims in the order of their numbers."""
+    """What a chapter's folder offers; claims in the order of their numbers.
+
+    fairness: which settings are made equal between the rivals that its claims are judged by.
+    """
 
     number: str
     title: str
@@ -52,6 +55,7 @@ class Chapter:
     claims: tuple[Claim, ...]
     references: tuple[Reference, ...]
     errata: tuple[Erratum, ...]
+    fairness: str = ""
 
     def experiment(self, name: str) -> Experiment:
         return next(experiment for experiment in self.experiments if experiment.name == name)
@@ -131,6 +135,7 @@ def load(number: str) -> Chapter:
         tuple(sorted(claims, key=lambda claim: natural(claim.id))),
         tuple(reference for experiment in experiments for reference in experiment.references),
         tuple(_part(package, folder, "errata", "ERRATA")),
+        str(getattr(package, "FAIRNESS", "")),
     )
 
 

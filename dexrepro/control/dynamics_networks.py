@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 from dexrepro.arrays import Array
 from dexrepro.networks import AdaptiveNetwork, Basis, GrowingGaussians, Lattice
 
-KINDS = ("broad", "broad_plain", "fuzzy", "fuzzy_enhanced")
+KINDS = ("broad", "broad_plain", "fuzzy", "fuzzy_enhanced", "constant")
+EVERYWHERE = 1e9  # m; so wide that a Gaussian is 1 wherever the arm is
 
 
 def dynamics_networks(
@@ -30,7 +31,8 @@ def dynamics_networks(
     """Networks for D (d^2 outputs of x), C (d^2 outputs of [x, x']) and G (d outputs of x), Eqs. (8.32) to (8.34).
 
     kind: "broad" grows nodes and enhances them with cos and sin, Eqs. (8.18) to (8.24); "broad_plain" grows without
-    enhancement; "fuzzy" has Gaussians on the grid of the levels [m, m/s]; "fuzzy_enhanced" adds cos and sin to it.
+    enhancement; "fuzzy" has Gaussians on the grid of the levels [m, m/s]; "fuzzy_enhanced" adds cos and sin to it;
+    "constant" has one node that is 1 everywhere, which makes of each network a (leaky) integral of the error.
     widths, rates (Gamma), thresholds (Theta; m, for C mixed with m/s): three numbers each, for D, C and G.
     leakage: beta [1/s]; neighbours, placement: m and beta_1 of Eqs. (8.19), (8.20); step: period of adaptation [s].
     """
@@ -38,6 +40,8 @@ def dynamics_networks(
         raise ValueError(f"kind of networks '{kind}' is none of {', '.join(KINDS)}")
 
     def basis(dimension: int, width: float, threshold: float) -> Basis:
+        if kind == "constant":
+            return GrowingGaussians(dimension, width=EVERYWHERE, threshold=EVERYWHERE, enhanced=False)
         if kind.startswith("broad"):
             return GrowingGaussians(
                 dimension,

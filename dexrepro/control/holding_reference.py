@@ -88,21 +88,25 @@ class ImpedanceReference(NonImpedanceReference):
 
 
 class FadeIn:
-    """Fades any holding law in from where the arm stands, as the estimated references are.
+    """Fades in the force that a law is asked for, from the one felt at contact; for any law of the force error.
 
-    smoothing_rate, smoothing_power: mu, eta. dt: control period [s].
+    The law is told its force error against that: what it integrates never sees a step, as it would if its output faded.
+    desired_force: that of the law [N]. smoothing_rate, smoothing_power: mu, eta. dt: control period [s].
     """
 
     kind: ClassVar[Kind] = "holding"
 
-    def __init__(self, *, law: HoldingLaw, smoothing_rate: float, smoothing_power: float, dt: float) -> None:
-        self.law, self.dt = law, dt
+    def __init__(
+        self, *, law: HoldingLaw, desired_force: Real, smoothing_rate: float, smoothing_power: float, dt: float
+    ) -> None:
+        self.law, self.desired_force, self.dt = law, desired_force, dt
         self.smoothing_rate, self.smoothing_power = smoothing_rate, smoothing_power
 
     def reset(self, measured: Measured[Real]) -> None:
-        """Start the law and fade in from here."""
+        """Start the law; the force felt at the next call is where its own begins."""
         self.law.reset(measured)
-        self._start, self._sample = measured.position, 0
+        self._lacking: Real = 0.0
+        self._sample = 0
 
     def diagnostics(self) -> Mapping[str, Real]:
         """Those of the law."""
@@ -110,9 +114,11 @@ class FadeIn:
 
     def __call__(self, measured: Measured[Real]) -> Real:
         """Reference [m]."""
-        fade = -math.expm1(-self.smoothing_rate * (self._sample * self.dt) ** self.smoothing_power)
+        if self._sample == 0:
+            self._lacking = self.desired_force - measured.force
+        left = math.exp(-self.smoothing_rate * (self._sample * self.dt) ** self.smoothing_power)
         self._sample += 1
-        return self._start + fade * (self.law(measured) - self._start)
+        return self.law(measured._replace(force=measured.force + left * self._lacking))
 
 
 class KnownMovement:

@@ -42,17 +42,30 @@ def soft_transfer(initial: Array, optimal: Array, progress: Array | float) -> Ar
 
 
 class ConstantGain:
-    """A gain given in advance: the initial one, or one computed from a model of the object."""
+    """A gain given in advance: the initial one, or one computed from a model of the object.
 
-    def __init__(self, gain: Sequence[float]) -> None:
-        self.gain: Sequence[float] = [float(entry) for entry in gain]
-        self.exploration, self.phase, self.learned = 0.0, WAITING, None
+    With ``initial`` that gain holds for ``wait`` [s] of contact first, in steps of ``dt`` [s].
+    """
+
+    def __init__(
+        self, gain: Sequence[float], initial: Sequence[float] | None = None, wait: float = 0.0, dt: float = 0.001
+    ) -> None:
+        self._final = [float(entry) for entry in gain]
+        self._initial = self._final if initial is None else [float(entry) for entry in initial]
+        self._wait = round(wait / dt)
+        self.reset()
 
     def reset(self) -> None:
-        """The gain stays."""
+        """Back to the gain at first contact."""
+        self.gain: Sequence[float] = self._initial
+        self._steps = 0
+        self.exploration, self.phase, self.learned = 0.0, WAITING, None
 
     def update(self, indentation: float, reference: float, force: float) -> None:
-        """The gain stays."""
+        """One control period of contact."""
+        self._steps += 1
+        if self._steps > self._wait:
+            self.gain = self._final
 
 
 def exploration_windows(samples: Array, dt: float, length: int, exosystem: float | None, start: float = 1.0) -> Windows:

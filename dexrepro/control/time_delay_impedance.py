@@ -76,6 +76,8 @@ class TimeDelayImpedance:
     "second_line" of Eq. (7.39). ``estimation`` switches the delayed term. ``velocity_filter`` is the coefficient (0..1,
     1: none) of the first-order low pass that the measured velocity went through: the delayed torque has to pass the
     same filter, or the loop is unstable. ``torque_limit`` [N m] clips the torque, also the one the next estimate sees.
+    ``integral_rate`` [1/s], of a rival without estimation: its integral over time of K_imp r is added to the torque,
+    held in the joints whose torque is at its limit.
     """
 
     kind: ClassVar[Kind] = "joint"
@@ -92,18 +94,20 @@ class TimeDelayImpedance:
         estimation: bool = True,
         velocity_filter: float = 1.0,
         torque_limit: float = np.inf,
+        integral_rate: float = 0.0,
     ) -> None:
         self.model, self.dt, self.error_slope, self.impedance = model, dt, error_slope, impedance
         (form,) = printed_forms(printed, SIGNS) or (None,)
         self._estimate_sign, self._impedance_sign = (1.0, 1.0) if form is None else SIGNS[form]
         self.stiffness, self.estimation = stiffness, estimation
-        self.velocity_filter, self.torque_limit = velocity_filter, torque_limit
+        self.velocity_filter, self.torque_limit, self.integral_rate = velocity_filter, torque_limit, integral_rate
         self._previous: tuple[Array, Array, Array, Array] | None = None
+        self._integral: Array | float = 0.0
         self.error = np.zeros(0)
 
     def reset(self, measured: Measured[Array]) -> None:
-        """Forget the torque of the last period."""
-        self._previous = None
+        """Forget the torque of the last period and the integral."""
+        self._previous, self._integral = None, 0.0
 
     def diagnostics(self) -> Mapping[str, Array]:
         """r (n,) [rad/s] of the last call."""
@@ -119,11 +123,14 @@ class TimeDelayImpedance:
         bias = self.model.bias(position, velocity)
         target = dq_d + self.error_slope * e
         torque = mass @ (ddq_d + self.error_slope * de) + coriolis(self.model, position, velocity, target) + gravity
-        torque += self._impedance_sign * self.impedance(self.stiffness(time), r) * r
+        restoring = self._impedance_sign * self.impedance(self.stiffness(time), r) * r
+        torque += restoring + self._integral
         if self._previous and self.estimation:
             delayed, old_velocity, old_mass, old_bias = self._previous
             acceleration = (velocity - old_velocity) / self.dt
             torque += self._estimate_sign * (delayed - old_mass @ acceleration - old_bias)
+        free = abs(torque) < self.torque_limit
+        self._integral = self._integral + self.integral_rate * self.dt * restoring * free
         torque = np.clip(torque, -self.torque_limit, self.torque_limit)
         delayed = self._previous[0] if self._previous else torque
         delayed = delayed + self.velocity_filter * (torque - delayed)

@@ -10,6 +10,7 @@ to help (Boone & Azen 1979; Morrey et al. 1981). One set of traits serves every 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -86,6 +87,7 @@ class Hand:
     """The hand of an operator on the leader and the tool that it drives.
 
     scaling: hand speed [m/s] -> scale [-], as in ``control.pose_transformation``; dt: sampling time [s].
+    cutoff: of a low-pass of the hand's velocity before it sets the scale [Hz]; None takes it as it is.
     tool: position at the start [m], shape (3,). ``record`` holds the whole history once something has moved.
     """
 
@@ -97,13 +99,15 @@ class Hand:
         *,
         dt: float = 0.01,
         tool: Array,
+        cutoff: float | None = None,
     ) -> None:
-        self.operator, self.scaling, self.dt = operator, scaling, dt
+        self.operator, self.scaling, self.dt, self.cutoff = operator, scaling, dt, cutoff
         noise, shake = rng.spawn(2)
         self.rng, self.tremor = noise, Tremor(operator.tremor, shake, dt, 3)
         self.centre, self.hand, self.tool = np.zeros(3), self.tremor(1)[0], np.array(tool, float)
         self.roll, self.tool_roll = 0.0, 0.0
         self.samples, self.submovements, self.clutches = 0, 0, 0
+        self._smoothing = np.zeros((1, 3))
         self.parts: list[tuple[Array, Array, Array, Array, Array]] = []
         self._speeds = np.linspace(0.0, 3.0, 301)
         profile = np.diff(strides(100), prepend=0.0)
@@ -123,12 +127,22 @@ class Hand:
     def _advance(self, path: Array, roll: Array, engaged: bool = True) -> None:
         """Append the intended path of the hand and its roll; the tool follows while the leader is engaged."""
         hand = path + self.tremor(len(path))
-        moved, scale = scaled_path(np.vstack([self.hand, hand]), self.scaling, self.dt)
+        moved, scale = self._moved(np.vstack([self.hand, hand]))
         tool = self.tool + (moved[1:] if engaged else np.zeros_like(hand))
         tool_roll = self.tool_roll + (roll - self.roll if engaged else np.zeros_like(roll))
         self.parts.append((hand, tool, scale[1:], roll, tool_roll))
         self.hand, self.tool, self.roll, self.tool_roll = hand[-1], tool[-1], float(roll[-1]), float(tool_roll[-1])
         self.centre, self.samples = path[-1], self.samples + len(path)
+
+    def _moved(self, hand: Array) -> tuple[Array, Array]:
+        """Displacement of the tool [m] and scale along a path of the hand (n, 3) [m]."""
+        if self.cutoff is None:
+            return scaled_path(hand, self.scaling, self.dt)
+        share = 1.0 - math.exp(-2 * math.pi * self.cutoff * self.dt)
+        steps = np.diff(hand, axis=0)
+        smooth, self._smoothing = signal.lfilter([share], [1.0, share - 1.0], steps, axis=0, zi=self._smoothing)
+        scale = self.scaling(np.linalg.norm(smooth, axis=1) / self.dt)
+        return np.cumsum(np.vstack([np.zeros(3), scale[:, None] * steps]), axis=0), np.r_[scale[0], scale]
 
     def _hold(self, duration: float) -> tuple[int, Array, Array]:
         samples = max(1, round(duration / self.dt))

@@ -150,12 +150,13 @@ def rollout(
     position: Array,
     velocity: Array,
     projection: float | None = None,
+    explicit: bool = False,
 ) -> Path:
     """Step a constrained primitive along all instants of its reference; v is tau dx/dt.
 
-    The gain k_n is treated implicitly, everything else explicitly. ``projection`` is the rate lambda of the discrete
-    barrier |e+| <= h - (1 - lambda) (h - |e|) (our addition): a step beyond it is put back on that sphere, whatever
-    the law, the step length or the reference; the steps where this happened are marked.
+    The gain k_n is treated implicitly unless ``explicit``, everything else explicitly. ``projection`` is the rate
+    lambda of the discrete barrier |e+| <= h - (1 - lambda) (h - |e|) (our addition): a step beyond it is put back on
+    that sphere, whatever the law, the step length or the reference; the steps where this happened are marked.
     """
     count, tau = len(reference.position), skill.time_constant
     x, v = np.array(position, float, subok=True), np.array(velocity, float, subok=True)
@@ -174,7 +175,9 @@ def rollout(
             if not held.all():
                 x, v = np.where(held[..., None], x, np.nan), np.where(held[..., None], v, np.nan)
         base = law.base(now)
-        if law.share:
+        if explicit:
+            after = v + dt * (base + law.share * now.decay)
+        elif law.share:
             implicit = dt * law.share * gains.velocity * kn
             after = (v + dt * base + implicit * (stabiliser + dt * now.stabiliser_rate)) / (1 + implicit)
         else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import re
 import textwrap
 from collections.abc import Iterator, Mapping
@@ -95,6 +96,16 @@ def title(figure: Figure, text: str) -> None:
     while lines > 1 and len(textwrap.wrap(text, width - 1)) == lines:
         width -= 1
     figure.suptitle(textwrap.fill(text, width), x=0.01, ha="left", fontsize=9, fontweight="bold")
+
+
+def at_most(value: float, digits: int) -> str:
+    """A bound that ``value`` keeps, rounded up to a number of decimals: for "at most" and "within"."""
+    return f"{math.ceil(value * 10**digits - 1e-9) / 10**digits:.{digits}f}"
+
+
+def at_least(value: float, digits: int) -> str:
+    """A bound that ``value`` exceeds, rounded down to a number of decimals."""
+    return f"{math.floor(value * 10**digits + 1e-9) / 10**digits:.{digits}f}"
 
 
 def panel(axes: Axes, letter: str, text: str = "") -> None:

@@ -5,17 +5,22 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from dexrepro import baselines, chapters
 from dexrepro.case import generator, live
 from dexrepro.chapters.chapter1.dartboard import experiment as dartboard
 from dexrepro.chapters.chapter1.force_tracking import experiment as force_tracking
 from dexrepro.chapters.chapter1.hand_over import experiment as hand_over
+from dexrepro.chapters.chapter1.hold_and_move import experiment as hold_and_move
 from dexrepro.chapters.chapter1.hold_path import hold_path
 from dexrepro.chapters.chapter1.line import carry, press
 from dexrepro.chapters.chapter1.lyapunov import experiment as lyapunov
 from dexrepro.chapters.chapter1.ready_to_hold import experiment as ready_to_hold
+from dexrepro.chapters.chapter1.sensitivity import experiment as sensitivity
 from dexrepro.chapters.chapter1.two_nuts import experiment as two_nuts
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.holding import AutoregressiveHolding, FixedDistance
+from dexrepro.experiment import Config, Recording
+from dexrepro.measures import rms
 from dexrepro.physics.soft_object import Cushion
 
 
@@ -38,14 +43,53 @@ def test_simulated_arms_agree_with_the_line():
     law = AutoregressiveHolding(dt=1e-3, desired_force=10.0, gain=0.11, estimator_gain=2.0, adaptation=1e-4, lags=3)
     time = 1e-3 * np.arange(2000)
     force = press(law, 0.015 * time, np.full(2000, 50.0), dt=1e-3)["force"][:, 0]
-    assert np.abs(force[::5] - 10.0 - recording["error"])[100:].max() < 0.05
+    assert np.abs(force - 10.0 - recording["error"])[500:].max() < 0.05
+    # The first 10 N count once, whatever is recorded.
+    line = float(np.sqrt(np.mean((force[:2000] - 10.0) ** 2)))
+    assert rms(recording["error"]) == pytest.approx(line, rel=5e-3)
 
 
 def test_printed_definition_loses_contact_and_counts_as_the_desired_force():
     config = case("force_tracking", "c1_printed")
     recording = force_tracking.simulate(config, rng("force_tracking"))
     assert recording.status == "left the workspace"
-    assert force_tracking.measure(recording, config)["rmse"] == pytest.approx(10.0)
+    found = force_tracking.measure(recording, config)
+    assert found["rmse"] == pytest.approx(10.0)
+    assert found["rmse_late"] is found["settling"] is None  # undefined, and no claim may hold on it
+    lost = {f"{name}_proposed": found for name in ("c1", "c2", "c3")}
+    assert force_tracking.summarise(lost, config)["spread"] is None
+
+
+def test_a_dropped_object_has_the_worst_score_whenever_it_fell():
+    config = case("hold_and_move", "t1_fixed")
+    for duration in (1.0, 9.0, 31.0):
+        time = np.arange(0.0, duration, 0.01)
+        recording = Recording({"time": time, "force": np.full(len(time), 15.0)}, status="object dropped")
+        found = hold_and_move.measure(recording, config)
+        assert found["rmse"] == 15.0
+        assert found["settling"] == config.duration
+        assert found["overshoot"] is None
+
+
+def test_the_sensitivity_study_moves_as_the_figure_does():
+    composed = compose_chapter("1", ["force_tracking.ramp_speed=0.02", "force_tracking.law.gain=0.2"])
+    config = experiment_cases(composed, "sensitivity")["tracking"]
+    partner, _ = sensitivity._motions(Config.of(config))
+    assert partner[1, 0] == pytest.approx(0.02 * 1e-3)
+    assert config["figure"]["law"]["gain"] == 0.2
+
+
+@pytest.mark.parametrize("case_", ["ready_only", "constant", "partner_only"])
+def test_waiting_and_assisting_fails_without_the_adjustable_weights(case_):
+    claim = next(claim for claim in chapters.load("1").claims if claim.id == "C1.19")
+    stored = {name: entry["value"] for name, entry in baselines.Baseline.of("1", "ready_to_hold").metrics.items()}
+    other = {
+        name.replace(f".{case_}.", ".adjustable."): value for name, value in stored.items() if f".{case_}." in name
+    }
+    assert claim.predicate.margin(stored) > 0
+    assert (
+        not (claim.predicate.margin(stored | {"ready_to_hold.adjustable.own_before_partner": None} | other) or -1) > 0
+    )
 
 
 def test_printed_sign_of_the_inverse_kinematics_runs_away():

@@ -11,13 +11,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from dexrepro import baselines, chapters
 from dexrepro.case import live
 from dexrepro.chapters.chapter2 import balloon_pair, batch, planar_pair
 from dexrepro.chapters.chapter2.balloon_movement import experiment as balloon_movement
+from dexrepro.chapters.chapter2.balloon_static.figures import _off
 from dexrepro.chapters.chapter2.holding_line import experiment as holding_line
 from dexrepro.chapters.chapter2.holding_sensitivity.experiment import margins_of
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
+from dexrepro.plan import plan_chapter
 
 cases = cache(partial(experiment_cases, compose_chapter("2")))
 
@@ -135,3 +138,31 @@ def test_the_follower_on_baxter_waits_for_contact_and_then_holds() -> None:
     assert run["object.force"][before].max() < 1.2
     assert np.diff(run["follower.tip"][before, 1]).max() < 1e-4
     assert run["object.force"][-1] > 1.0
+
+
+def test_an_estimate_that_is_off_on_either_side_has_not_converged() -> None:
+    claim = next(claim for claim in chapters.load("2").claims if claim.id == "C2.08")
+    stored = {name: entry["value"] for name, entry in baselines.Baseline.of("2", "movement_estimation").metrics.items()}
+    assert claim.predicate is not None
+    assert (claim.predicate.margin(stored) or 0) > 0
+    for off in (0.05, -0.05):
+        assert (claim.predicate.margin(stored | {"movement_estimation.light10.estimation_error": off}) or 1) < 0
+
+
+def test_a_start_may_be_off_by_another_distance_in_each_axis() -> None:
+    config = Config.of({"cases": {"off_80": {"discrepancy": [0.08, 0.05]}, "off_100": {"discrepancy": 0.1}}})
+    assert _off(config, "off_80") == "0.08 and 0.05 m off"
+    assert _off(config, "off_100") == "0.1 m off"
+
+
+def test_a_key_that_every_case_sets_itself_is_said_to_have_no_effect() -> None:
+    plans, _ = plan_chapter("2", ["balloon_static.discrepancy=0.05"], write=False)
+    assert [text for plan in plans for text in plan.differs] == [
+        "discrepancy=0.05 (book: 0.08), without effect: every case sets its own"
+    ]
+
+
+def test_a_shared_value_is_named_beside_other_overrides() -> None:
+    given = ["shared.fixed.displacement=-0.2", "hold_and_move.object.mass=0.4", "only=hold_and_move"]
+    plans, _ = plan_chapter("1", given, write=False)
+    assert plans[0].differs == ["object.mass=0.4 (book: 0.3)", "t1_fixed.law.displacement=-0.2 (book: -0.15)"]

@@ -3,11 +3,13 @@
 import json
 
 import numpy as np
+import pytest
 
 from dexrepro import chapters
-from dexrepro.chapters.chapter5 import pen
+from dexrepro.chapters.chapter5 import crossing, pen
 from dexrepro.cli import main
 from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.experiment import Config
 from dexrepro.robots.pen_arm import pen_arm_angles
 
 chapter5 = chapters.load("5")
@@ -93,3 +95,73 @@ def test_the_printed_sign_of_the_damping_teaches_another_movement(tmp_path):
     metrics = run(tmp_path, "style_transformation", *short, cases)
     assert metrics["style_transformation.default.z.final"] < 0.2
     assert metrics["style_transformation.printed.z.final"] > 1.0
+
+
+def test_any_letter_may_be_the_base_and_any_number_of_kernels_be_given(tmp_path):
+    style = [
+        "style_transformation.hand.base=l", "style_transformation.hand.targets=[a,w,z]",
+        "style_transformation.features.draws=1", "~style_transformation.cases",
+        "+style_transformation.cases.default={}",
+    ]  # fmt: skip
+    assert run(tmp_path / "a", "style_transformation", *style)["style_transformation.default.z.final"] < 1
+    accuracy = [
+        "letter_accuracy.kernels.counts=[8]", "letter_accuracy.kernels.draws=2", "letter_accuracy.features.counts=[10]",
+        "~letter_accuracy.cases", "+letter_accuracy.cases.default={equal_size: true}",
+    ]  # fmt: skip
+    assert run(tmp_path / "b", "letter_accuracy", *accuracy)["letter_accuracy.default.n8.dmp.mse"] < 2
+
+
+def test_printed_amplitude_is_undefined_where_start_and_goal_agree_up_to_rounding(tmp_path):
+    short = [
+        "obstacle_crossing.features.draws=1",
+        "obstacle_crossing.dmp.amplitude=printed",
+        "~obstacle_crossing.cases",
+    ]
+    metrics = run(tmp_path, "obstacle_crossing", *short, "+obstacle_crossing.cases.level={}")
+    assert not [name for name in metrics if "end_error" in name]
+
+
+def test_goals_lie_where_demonstrations_end():
+    cases = experiment_cases(compose_chapter("5"), "obstacle_crossing")
+    heights = {name: crossing.goals(Config.of(cases[name]))[:, 2] for name in ("default", "printed_amplitude")}
+    assert (heights["default"] == 0).all()
+    assert (heights["printed_amplitude"] == 0.02).all()
+
+
+def test_integrator_has_the_networks_effective_gain_and_its_rate_of_forgetting():
+    config = Config.of(experiment_cases(compose_chapter("5"), "bounded_tracking")["letter_w"])
+    tip = np.linspace([0.15, -0.02, -0.1], [0.18, 0.02, -0.1], 200)
+    target = pen.reference(tip, 0.01)
+    centres = pen.node_centres(config, target, 12, np.random.default_rng(0))
+    network = pen.network(config, centres, target)
+    config.network["integrator"] = True
+    single = pen.network(config, centres, target)
+    inputs = np.concatenate([target.position / 0.35, target.velocity / 1.2], axis=1)[::10]
+    energy = [np.mean([np.sum(n.basis(z) ** 2) for z in inputs]) for n in (network, single)]
+    assert single.basis.capacity == 1
+    np.testing.assert_allclose(single.gain * energy[1], network.gain * energy[0], rtol=1e-9)
+    assert single.leakage == network.leakage
+
+
+def test_every_case_as_printed_takes_the_one_u():
+    cases = experiment_cases(compose_chapter("5", ["bounded_tracking.u=0.3"]), "bounded_tracking")
+    assert {cases[name]["law"]["robust_rate"] for name in ("printed", "printed_robust", "sign_robust")} == {0.3}
+
+
+@pytest.mark.parametrize("chapter", ["5", "6"])
+def test_a_switch_changes_what_its_erratum_names_and_nothing_else(chapter):
+    def leaves(value, path=()):
+        if isinstance(value, dict):
+            return {key: leaf for name, item in value.items() for key, leaf in leaves(item, (*path, name)).items()}
+        return {".".join(path): value}
+
+    for erratum in chapters.load(chapter).errata:
+        for experiment in {part.partition(".")[0] for part in erratum.switch.split()}:
+            named = {part.partition("=")[0].partition(".")[2] for part in erratum.switch.split()}
+            before = experiment_cases(compose_chapter(chapter), experiment)
+            after = experiment_cases(compose_chapter(chapter, erratum.switch.split()), experiment)
+            for case, values in before.items():
+                old, new = leaves(values), leaves(after[case])
+                changed = {key for key in old if old[key] != new[key]}
+                # A law's bound is the experiment's, by reference.
+                assert {key.removeprefix("law.") if "bound" in key else key for key in changed} <= named, erratum.id

@@ -7,9 +7,12 @@ from dexrepro.case import generator
 from dexrepro.chapters.chapter6 import bimanual, learning, plane
 from dexrepro.chapters.chapter6.arm_obstacles import experiment as arm_obstacles
 from dexrepro.chapters.chapter6.constraint_cases import experiment as constraint_cases
+from dexrepro.chapters.chapter6.keep_out import experiment as keep_out
+from dexrepro.chapters.chapter6.obstacle_terms import experiment as obstacle_terms
 from dexrepro.chapters.chapter6.planar_constraint import experiment as planar_constraint
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
+from dexrepro.humans.segmentation import pauses
 from dexrepro.primitives.barrier import Constraint
 from dexrepro.primitives.constrained import LAWS, Reference, rollout
 
@@ -76,8 +79,7 @@ def constrained(config: Config, mirror: bool = False, scale: float = 1.0) -> np.
         skill.forcing * flip,
         skill.goal * flip,
         skill.time_constant,
-        skill.stiffness,
-        skill.damping,
+        skill.system,
         skill.nominal * flip,
     )
     parts = [part[:, None] * flip for part in (reference.position, reference.velocity, reference.acceleration)]
@@ -170,3 +172,67 @@ def test_detour_on_the_arm_stays_clear_of_the_new_box_by_wrist_and_margin():
     reference = arm_obstacles._reference(config, movement)
     centre = 100 * np.array(config.boxes.new)
     assert np.linalg.norm(reference.position - centre, axis=1).min() > 4.24 + 4.5 + config.cdmp.margin
+
+
+def along(name: str, **changes: object) -> dict[str, float | None]:
+    config = case("planar_constraint", name, demonstrations__groups=1, **changes)
+    recording = planar_constraint.simulate(config, lambda purpose: generator(0, "planar_constraint", purpose))
+    assert (recording.status == "finished") == (not recording.frames["groups"].violated_from.notna().any())
+    return planar_constraint.measure(recording, config)
+
+
+def test_a_run_whose_law_became_undefined_has_no_number_that_flatters():
+    lost = along("tau1_feedforward")
+    assert lost["violated_from"] > 2
+    assert {lost[name] for name in ("settle_after_arc", "peak_in_arc", "goal_error", "clearance", "v_rises")} == {None}
+
+
+def test_where_the_consistent_law_keeps_its_tube():
+    """From an offset inside alone; from a velocity error only as far as the tracking gains go without barrier."""
+    assert along("consistent_off")["violated_groups"] == 0
+    for weight in ("one", "h2", "off"):
+        assert along("consistent", start__speed=5, cdmp__weight=weight)["violated_groups"] == 0
+        assert along("consistent", start__speed=20, cdmp__weight=weight)["violated_from"] < 0.05
+
+
+def test_pauses_are_found_with_their_number():
+    drawings = lesson(case("planar_skill", "book", demonstrations__groups=1)).drawings
+    for drawing in drawings:
+        (found,) = pauses(drawing.time, drawing.position)
+        assert abs(found - drawing.pauses[0]) < 0.3
+        later = drawing.time > drawing.pauses[0] + 0.3
+        assert pauses(drawing.time[later], drawing.position[later]) == []
+
+
+def test_choices_and_norms_count_as_operations():
+    array = np.ones((4, 2)).view(obstacle_terms._Counted)
+    for expected, work in ((16, lambda: np.linalg.norm(array, axis=-1)), (8, lambda: np.where(array > 2, 1, array))):
+        obstacle_terms._Counted.operations = 0
+        work()
+        assert obstacle_terms._Counted.operations >= expected
+    chosen = np.take_along_axis(array, np.zeros((4, 1), int), axis=1)
+    assert isinstance(chosen, obstacle_terms._Counted)
+
+
+def test_a_bar_that_a_path_stops_before_is_not_passed():
+    bars = obstacle_terms._bars(case("obstacle_terms", "potential"), [2.0])
+    assert (bars.clearance > 0).all()
+    assert not bars.passed.any()
+
+
+def test_an_outside_run_that_steps_over_its_barrier_has_no_goal_error():
+    config = case("keep_out", "still_printed", offsets=[0.3], speeds=[0])
+    recording = keep_out.simulate(config, lambda purpose: generator(0, "keep_out", purpose))
+    found = keep_out.measure(recording, config)
+    assert recording.status.startswith("stepped over the barrier at")
+    assert found["goal_error"] is found["goal_error_worst"] is None
+    assert found["stepped_over_at"] < 5
+
+
+def test_the_lyapunov_function_rises_near_the_bound_without_the_barriers_share_of_the_gain():
+    for name in ("asymmetric_inside", "symmetric_inside", "symmetric_outside", "asymmetric_outside"):
+        config = case("constraint_cases", name)
+        recording = constraint_cases.simulate(config, lambda purpose: generator(0, "constraint_cases", purpose))
+        found = constraint_cases.measure(recording, config)
+        assert found["rising_near_bound"] == 0
+        assert found["rising_without_share"] > 100

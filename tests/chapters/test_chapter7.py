@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 from typing import Any
 
 import numpy as np
 import pytest
 
+from dexrepro import chapters
 from dexrepro.case import live
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.chapters.chapter7.fuzzy_generalisation import experiment as fuzzy_generalisation
@@ -16,9 +19,13 @@ from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_
 from dexrepro.chapters.chapter7.style_separation import experiment as style_separation
 from dexrepro.chapters.chapter7.unseen_conditions import experiment as unseen_conditions
 from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.control.contract import Measured
+from dexrepro.control.motion import Motion
+from dexrepro.control.time_delay_impedance import ConstantImpedance, TimeDelayImpedance
 from dexrepro.experiment import Config
 from dexrepro.measures import rms_distance
-from dexrepro.robots.pen_arm import pen_arm_tip
+from dexrepro.physics.model import RigidBodyModel
+from dexrepro.robots.pen_arm import pen_arm, pen_arm_tip
 
 
 @pytest.fixture(scope="module")
@@ -139,3 +146,44 @@ def test_a_push_moves_the_arm_by_its_compliance_without_estimation(cases: Any) -
     metrics = obstacle_contact.measure(obstacle_contact.simulate(config, None), config)
     assert metrics["static_deviation"] == pytest.approx(metrics["predicted_deviation"], rel=0.15)
     assert metrics["contact_peak"] == 0.0
+
+
+def test_integral_action_holds_the_last_load_and_waits_while_the_torque_is_at_its_limit() -> None:
+    model = RigidBodyModel(pen_arm())
+    law = TimeDelayImpedance(
+        model, 0.001, 20.0, ConstantImpedance(1.0), estimation=False, torque_limit=5.0, integral_rate=100.0
+    )
+    still = Measured(0.0, np.full(3, 0.3), np.zeros(3), np.full(3, np.nan))
+
+    def torque(error: float) -> np.ndarray:
+        return law(still, Motion(still.position + error, np.zeros(3), np.zeros(3))).torque
+
+    law.reset(still)
+    rest = torque(0.0)
+    for _ in range(10):
+        torque(0.01)  # K r = 1.0 x 20 x 0.01
+    assert torque(0.0) - rest == pytest.approx(np.full(3, 10 * 100.0 * 0.001 * 0.2), rel=1e-6)
+    for _ in range(1000):
+        torque(1.0)  # beyond the limit
+    assert torque(0.0) - rest == pytest.approx(np.full(3, 0.2), rel=1e-6)
+    law.reset(still)
+    assert torque(0.0) == pytest.approx(rest)
+
+
+@pytest.mark.parametrize("chapter", ["7", "8"])
+def test_a_switch_that_adds_a_case_merges_into_none_that_exists(chapter: str) -> None:
+    """Merged into another case it would run another erratum's printed form as well."""
+    shipped = compose_chapter(chapter)
+    for erratum in chapters.load(chapter).errata:
+        for experiment, case in re.findall(r"\+(\w+)\.cases\.(\w+)=", erratum.switch):
+            before = experiment_cases(shipped, experiment)
+            after = experiment_cases(compose_chapter(chapter, shlex.split(erratum.switch)), experiment)
+            assert set(after) - set(before) == {case}, erratum.id
+            assert all(after[name] == before[name] for name in before), erratum.id
+
+
+def test_the_relay_of_7_40_is_run_with_the_corrected_signs() -> None:
+    (erratum,) = (e for e in chapters.load("7").errata if e.id == "E7.20")
+    case = experiment_cases(compose_chapter("7", shlex.split(erratum.switch)), "impedance_tracking")["as_printed"]
+    assert case["law"]["printed"] == []
+    assert case["law"]["impedance"]["switching_gain"] == 100.0

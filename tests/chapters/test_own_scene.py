@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dexrepro.case import live
+from dexrepro.case import generator, live
 from dexrepro.chapters.own.scene import experiment as scene
 from dexrepro.cli import main, run_overrides
 from dexrepro.config import InputError, compose_chapter, experiment_cases
@@ -206,3 +206,85 @@ def test_folders_and_files_have_the_names_that_people_give_them(
     assert len([*folder.glob("run (2)/größe/runs/own-*/metrics.json")]) == 1
     assert main(["run", "-m", *words, "results=~/run (3), größe", "seed=0,1", "workers=1"]) == 0
     assert len([*folder.glob("run (3), größe/runs/own-*/metrics.json")]) == 2
+
+
+HOLDS = "joint_pd.JointPD, stiffness: 300, damping: 20"
+STILL = "{line: {start: [0.5, 0.1, 0], end: [0.5, 0.1, 0], period: 4}}"
+
+
+def test_a_push_moves_the_arm_where_and_when_it_acts() -> None:
+    push = "{force: [0, 3, 0], start: 0.2, duration: 0.1, link: fore}, {force: [1, 0, 0], start: 0.4, duration: 9}"
+    recording, _ = run(HOLDS, f"scene.pushes=[{push}]", leader=STILL)
+    moved = np.linalg.norm(recording["arm.tip"] - recording["arm.tip"][0], axis=1)
+    assert moved[recording.time < 0.2].max() < 1e-6
+    assert moved[recording.between(0.2, 0.3)].max() > 1e-3
+    assert not np.any(recording["arm.force"]), "no sensor feels a push"
+    assert recording["push.y"][recording.between(0.21, 0.29)] == pytest.approx(3.0)
+    assert recording["push1.x"][-1] == 1.0
+
+
+def test_a_wall_of_given_stiffness_pushes_back() -> None:
+    wall = "scene.wall={point: [0.48, 0, 0], normal: [-2, 0, 0], stiffness: 500, damping: 5}"
+    leader = "{line: {start: [0.45, 0.1, 0], end: [0.5, 0.1, 0], period: 2}}"
+    recording, _ = run(HOLDS, wall, "scene.duration=1", leader=leader)
+    depth = np.maximum(recording["arm.tip"][:, 0] - 0.48, 0.0)
+    force = recording["arm.force"]
+    assert depth.max() > 1e-3
+    assert force[-1, 0] == pytest.approx(-500 * depth[-1], rel=0.1)
+    assert not force[depth == 0].any()
+
+
+def test_two_elastic_objects_act_at_once() -> None:
+    springs = "scene.elastic=[{stiffness: 100, rest_length: 0.3}, {stiffness: 50, rest_length: 0.5, to: [0.5, 0.5, 0]}]"
+    recording, _ = run(HOLDS, springs, "scene.offset=[-0.25,0,0]",
+                       leader="{line: {start: [0.75, 0.1, 0], end: [0.75, 0.1, 0], period: 4}}")  # fmt: skip
+    tip, leader = recording["arm.tip"][0], recording["leader.pose"][0]
+    for name, stiffness, rest, place in (("object", 100, 0.3, leader), ("object1", 50, 0.5, (0.5, 0.5, 0))):
+        force = stiffness * (rest - np.linalg.norm(tip - np.array(place)))
+        assert recording[f"{name}.force"][0] == pytest.approx(force, rel=0.02)
+
+
+def test_a_payload_bends_a_law_that_does_not_know_it() -> None:
+    pen = "{_target_: dexrepro.robots.pen_arm.pen_arm}"
+    law = 'computed_torque.ComputedTorque, model: "${scene.model}", frequency: 30'
+    still = "{points: [[0, 0.2, 0, 0.05], [1, 0.2, 0, 0.05]]}"
+    errors = [
+        run(law, "scene.start=[0,1,-1]", "scene.duration=1", *more, arm=pen, leader=still)[1]["rmse"]
+        for more in ((), ("scene.payload={mass: 0.02}",), ("scene.payload={mass: 0.04}",))
+    ]
+    assert errors[0] < 1e-4
+    assert 1e-4 < errors[1] < errors[2]
+
+
+def test_a_noisy_sensor_is_noisy_and_the_same_in_every_run() -> None:
+    spring = ("scene.elastic={stiffness: 100, rest_length: 0.27}", "scene.offset=[-0.25,0,0]", "scene.duration=0.2")
+    leader = "{line: {start: [0.75, 0.1, 0], end: [0.75, 0.1, 0], period: 4}}"
+    law = "scene.law={_target_: dexrepro.control.joint_pd.JointPD, stiffness: 300, damping: 20}"
+    config = configured(law, *spring, "scene.sensor={velocity_noise: 0.05, force_delay: 0.01}", leader=leader)
+    first, again = (scene.simulate(config, lambda purpose: generator(0, "scene", purpose)) for _ in range(2))
+    assert np.array_equal(first["arm.torque"], again["arm.torque"])
+    exact, _ = run(HOLDS, *spring, leader=leader)
+    assert np.std(np.diff(first["arm.torque"][50:], axis=0)) > 5 * np.std(np.diff(exact["arm.torque"][50:], axis=0))
+
+
+@pytest.mark.parametrize(
+    ("word", "sentence"),
+    [
+        ("pushes=[{force: [0, 1, 0], start: 1, duration: 1, link: hand}]",
+         "scene.pushes.0.link = hand is not allowed: there are upper, fore"),
+        ("pushes={force: [0, 1], start: 1, duration: 1}",
+         r"scene.pushes.force = \[0, 1\] is not allowed: it must be three numbers"),
+        ("pushes=[{force: [0, 1, 0], start: 1}]", "scene.pushes.0.duration = None is not allowed: it must be a number"),
+        ("pushes=[5]", "scene.pushes.0 = 5 is not allowed: it must have force, start, duration, link, point"),
+        ("wall={point: [0,0,0], normal: [0,0,0], stiffness: 5}", r"scene.wall.normal = \[0, 0, 0\] is not allowed"),
+        ("wall={point: [0,0,0], normal: [1,0,0], stifness: 5}", "unknown key 'scene.wall.stifness': did you"),
+        ("elastic={stiffness: 5, rest_length: 1, damp: 2}", "unknown key 'scene.elastic.damp': did you mean 'damping'"),
+        ("elastic={stiffness: 5, rest_length: 1, to: box}", "scene.elastic.to = box is not allowed: it must be three"),
+        ("payload={mass: heavy}", "scene.payload.mass = heavy is not allowed: it must be a number"),
+        ("sensor={force_nois: 1}", "unknown key 'scene.sensor.force_nois': did you mean 'force_noise'"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_in_a_block_names_key_value_and_what_is_allowed(word: str, sentence: str) -> None:
+    law = "scene.law={_target_: dexrepro.control.joint_pd.JointPD, stiffness: 300, damping: 20}"
+    with pytest.raises(InputError, match=sentence):
+        scene.simulate(configured(law, f"scene.{word}"), lambda purpose: generator(0, "scene", purpose))

@@ -129,11 +129,30 @@ def test_joint_pd_pulls_towards_the_reference_and_brakes():
 
 
 def test_a_faded_law_starts_at_rest_and_ends_as_itself():
-    law = FadeIn(law=ForceControl(gain=0.01, desired_force=1.0), smoothing_rate=5, smoothing_power=1, dt=DT)
+    law = faded(ForceControl(gain=0.01, desired_force=1.0))
     law.reset(at(0.5))
     targets = [law(at(0.5, 3.0)) for _ in range(4000)]
     assert targets[0] == 0.5
     assert targets[-1] == pytest.approx(0.52, abs=1e-9)
+
+
+def faded(law):
+    return FadeIn(law=law, desired_force=1.0, smoothing_rate=5, smoothing_power=1, dt=DT)
+
+
+def test_an_integrator_does_not_wind_up_while_it_fades_in():
+    forces = hold(faded(IntegralForceControl(rate=0.5, desired_force=DESIRED, dt=DT)), 3.0, start=0.55)
+    assert forces.max() < 1.001 * DESIRED
+    assert forces[-1] == pytest.approx(DESIRED, rel=1e-3)
+
+
+def test_a_speed_limit_acts_where_the_impedance_integrates():
+    law = PassiveImpedance(mass=1.0, damping=0.0, desired_force=0.0, dt=0.01, speed_limit=0.1)
+    law.reset(at(0.0))
+    outward = [law(at(0.0, 5.0)) for _ in range(100)]
+    assert np.diff(outward).max() == pytest.approx(0.001)
+    back = [law(at(0.0, -5.0)) for _ in range(5)]
+    assert back[-1] < back[0]  # no speed beyond the limit that it would have to lose first
 
 
 def test_known_movement_with_an_impedance_lead_holds_the_force_exactly():

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from dexrepro.arrays import Array, Rng
+from dexrepro.config import InputError
 from dexrepro.control.holding_line import HoldingLineRegulation
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.drive import HoldingDrive
@@ -21,7 +22,7 @@ from dexrepro.physics.servo import JointServo
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.baxter import baxter, torso
-from dexrepro.robots.inverse_kinematics import InverseKinematics, solve
+from dexrepro.robots.inverse_kinematics import InverseKinematics, Unreachable, solve
 
 # The grippers face each other along y: columns are the gripper's axes in the torso frame.
 FACING = {
@@ -48,13 +49,27 @@ def scene(config: Config, rng: Rng | None = None) -> World:
     world.add_body("torso", torso(), (0, 0, 0), collides=False)
     sensor = Sensor(force_noise=config.sensor.noise, force_cutoff=config.sensor.cutoff)
     for role, side in ROLES.items():
-        arm = baxter(side)
-        posture = solve(arm, start(config, role), FACING[side], start=config[role].posture, task="pose")
+        arm = config[role].get("arm") or baxter(side)
+        posture = ready(arm, start(config, role), FACING[side], config[role].posture)
         noise = rng(f"{role} sensor") if rng else np.random.default_rng(0)
         world.add_arm(role, arm, posture, sensor=sensor, rng=noise)
     between = ("follower", "leader")
     world.add(Elastic("object", between, config.stiffness, config.rest_length, unilateral=True))
     return world
+
+
+def ready(arm: Arm, place: Array, facing: Array, posture: list[float]) -> Array:
+    """Joint angles (n,) [rad] with the gripper at a place (3,) [m] and turned as the task asks.
+
+    Raises InputError where an arm of the user's cannot do that.
+    """
+    if not isinstance(arm, Arm):
+        raise InputError("follower_arm is no arm: name one by its _target_, such as dexrepro.robots.urdf.from_urdf")
+    try:
+        return solve(arm, place, facing, start=posture if len(posture) == arm.dof else None, task="pose")
+    except Unreachable as error:
+        where = ", ".join(f"{value:.3g}" for value in place)
+        raise InputError(f"follower_arm does not reach ({where}) m from where its base= puts it: {error}") from error
 
 
 def stage(world: World, recording: Recording, config: Config) -> Recording:

@@ -6,14 +6,6 @@ from dexrepro.claims import Claim
 
 CLAIMS = (
     Claim(
-        "C5.14",
-        "5.6",
-        "z and k arrive early, w and l late.",
-        None,
-        where="5.5.2",
-        not_testable="The order depends on the handwriting; other shapes of the same letters give another one.",
-    ),
-    Claim(
         "C5.28",
         "5.8",
         "IDMP needs less computation than methods based on reinforcement learning.",

@@ -72,6 +72,15 @@ def _scaling(config: Config) -> Scaling:
     return Scaling(np.array([True, False, False]), np.full(3, 12.0))
 
 
+def undefined(demonstrations: dict[int, Demonstration], config: Config) -> str:
+    """Why the printed amplitude cannot be used: start and goal agree on an axis, up to rounding; "" where it can."""
+    first = demonstrations[1]
+    if config.dmp.amplitude != "printed" or (np.abs(first.goal - first.start) > 1e-6 * first.extent.max()).all():
+        return ""
+    return "not defined: the printed amplitude is zero where start and goal agree on an axis"
+
+
 def goals(config: Config) -> Any:
     """The nine goals (9, 3) [cm]."""
-    return np.array([(x, y, 0.0) for x in config.goals.x for y in config.goals.y])
+    height = config.demonstration.end_offset if config.goals.z is None else config.goals.z
+    return np.array([(x, y, height) for x in config.goals.x for y in config.goals.y])

@@ -237,6 +237,16 @@ ERRATA = (
         "1/2 W~^T Gamma_s^-1 W~; <=.",
     ),
     Erratum(
+        "E5.32",
+        "(5.46)-(5.48)",
+        "error",
+        "The step to (5.48) bounds epsilon delta by delta^2 / 2 + epsilon^2 / 2, writes the second term and drops the "
+        "first; with it the decay is by K_tau - 1/2, so that K_tau > 1/2 is needed.",
+        "epsilon delta <= a delta^2 + epsilon^2 / (4 a) with a < K_tau: decay by K_tau - a for any K_tau, and a larger "
+        "sigma. Here K_tau is below 1/2.",
+        evidence=(f"{TRACKING}.letter_w.lyapunov_late",),
+    ),
+    Erratum(
         "E5.27",
         "v(t)",
         "reading",

@@ -96,16 +96,26 @@ def model(config: Config) -> RigidBodyModel:
 def node_centres(config: Config, target: Sampled, nodes: int, rng: np.random.Generator) -> Any:
     """Centres (nodes, 6) scattered along a reference, in the scaled input [q / 0.35, q' / 1.2] of the law."""
     samples = np.linspace(0, len(target) - 1, nodes).round().astype(int)
-    scaled = np.concatenate([target.position / 0.35, target.velocity / 1.2], axis=1)
-    return scaled[samples] + config.network.scatter * rng.standard_normal((nodes, 6))
+    return _inputs(target)[samples] + config.network.scatter * rng.standard_normal((nodes, 6))
 
 
-def network(config: Config, centres: Any) -> AdaptiveNetwork:
-    """exp(-|z - c|^2 / 2) at the centres; dW/dt = gain (S delta^T - leakage W)."""
-    gain = config.network.gain
-    return AdaptiveNetwork(
-        Gaussians(centres, np.sqrt(2.0)), 3, gain=gain, leakage=gain * config.network.leakage, step=config.arm.step
-    )
+def _inputs(target: Sampled) -> Any:
+    """The network's input (N, 6) along a reference."""
+    return np.concatenate([target.position / 0.35, target.velocity / 1.2], axis=1)
+
+
+def network(config: Config, centres: Any, target: Sampled) -> AdaptiveNetwork:
+    """exp(-|z - c|^2 / 2) at the centres; dW/dt = gain (S delta^T - leakage W).
+
+    ``integrator``: one constant node in their place, at their mean |S|^2 along the reference times the gain and the
+    same rate of forgetting, so that the network is an integral of the velocity error and nothing else is changed.
+    """
+    gain, forgetting = config.network.gain, config.network.gain * config.network.leakage
+    nodes = Gaussians(centres, np.sqrt(2.0))
+    if config.network.integrator:
+        gain *= np.mean([np.sum(nodes(z) ** 2) for z in _inputs(target)[::10]])
+        nodes = Gaussians(np.zeros((1, 6)), 1e9)
+    return AdaptiveNetwork(nodes, 3, gain=gain, leakage=forgetting, step=config.arm.step)
 
 
 def track(config: Config, target: Sampled, law: Law, nominal: RigidBodyModel) -> Recording:

@@ -142,6 +142,8 @@ def _track(config: Config, time: Array, skill: Skill, reference: Array, margin: 
         return np.full(shape, np.nan), 0
     spline = CubicSpline(time[knots], flat[knots])
     smooth = Reference(spline(time), spline(time, 1), spline(time, 2))
+    if not config.primitive:
+        return smooth.position.reshape(shape), 0
     path = learning.constrained(
         skill, smooth, Config({**config.cdmp, "margin": margin}), config.step, skill.time_constant * smooth.velocity[0]
     )

@@ -6,14 +6,6 @@ from dexrepro.claims import Claim
 
 CLAIMS = (
     Claim(
-        "C6.28",
-        "6.D",
-        "The calculation of the constrained primitive is more complex than that of [16] and [39].",
-        None,
-        where="6.5, point 3",
-        not_testable="wall time is bound to the implementation; table T6.D counts operations instead (C6.45)",
-    ),
-    Claim(
         "C6.31",
         "6.13",
         "Which of the two ways to a reference is better depends on the task.",

@@ -75,13 +75,24 @@ def tube(cdmp: Config, margin: float | Array) -> Constraint:
     ``bound_scaling`` "scaled": H = k_z h, "printed": H = h (E6.01); ``weight`` of the barrier: "one" (printed), "h2"
     (H^2) or "off".
     """
-    bound = np.asarray(margin) * (cdmp.kz if cdmp.bound_scaling == "scaled" else 1.0)
-    weight = {"one": 1.0, "h2": bound**2, "off": 0.0}[cdmp.weight]
-    return Constraint(True, bound, weight=weight)
+    bound = np.asarray(margin) * (cdmp.kz if scaled(cdmp) else 1.0)
+    return Constraint(True, bound, weight=weight(cdmp, bound))
 
 
-def constrained(s: Skill, reference: Reference, cdmp: Config, dt: float | Array, velocity: Array) -> Path:
-    """The constrained movement from the reference's start with a scaled initial velocity tau dx/dt."""
+def scaled(cdmp: Config) -> bool:
+    """Whether the bounds are those of x^c - x, H = k_z h."""
+    return bool(cdmp.bound_scaling == "scaled")
+
+
+def weight(cdmp: Config, bound: float | Array) -> float | Array:
+    """Factor of the barrier for a bound H."""
+    return {"one": 1.0, "h2": bound**2, "off": 0.0}[cdmp.weight]
+
+
+def constrained(
+    s: Skill, reference: Reference, cdmp: Config, dt: float | Array, velocity: Array, offset: float | Array = 0.0
+) -> Path:
+    """The constrained movement from ``offset`` [cm] off the reference's start, at a scaled velocity tau dx/dt."""
     projection = cdmp.projection_rate if cdmp.projection else None
-    constraint = tube(cdmp, cdmp.margin)
-    return rollout(s, reference, constraint, gains(cdmp), law(cdmp), dt, reference.position[0], velocity, projection)
+    start = reference.position[0] + offset
+    return rollout(s, reference, tube(cdmp, cdmp.margin), gains(cdmp), law(cdmp), dt, start, velocity, projection)

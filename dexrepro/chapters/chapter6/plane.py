@@ -56,7 +56,8 @@ def _lesson(config: Config, rng: np.random.Generator) -> Lesson:
         paces = d.duration * (1 + 0.08 * rng.normal(size=2))
         drawings.append(draw(strokes, paces, rng, d.spread, d.tremor))
     drawings = [replace(w, position=w.position * (1 + config.perturbation)) for w in drawings]
-    cuts = [CUTS[config.segmentation](drawing.time, drawing.position) for drawing in drawings]
+    cut = CUTS[config.segmentation]
+    cuts = [cut(drawing.time, drawing.position) for drawing in drawings]
     halves = []
     for keep in (np.less_equal, np.greater_equal):
         pieces = [(w.time[keep(w.time, cut)], w.position[keep(w.time, cut)]) for w, cut in zip(drawings, cuts)]

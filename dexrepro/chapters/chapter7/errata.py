@@ -38,7 +38,7 @@ ERRATA = (
         evidence=(f"{LEARNING}.frozen.rmse1", f"{LEARNING}.refit.rmse1"),
     ),
     Erratum(
-        "E7.07", "(7.7), (7.8)", "slip", "The second line of (7.8) writes W_e for W_h, and F^n for Z^n below it.",
+        "E7.07", "(7.7), (7.8)", "slip", "The first line of (7.8) writes W_e for W_h, the text below F^n for Z^n.",
         "W_h, Z^n.",
     ),
     Erratum(
@@ -118,7 +118,7 @@ ERRATA = (
         "sign(r) Gamma eps / r is infinite at r = 0, so that K r is a relay of Gamma eps (100 N m if eps is in N, "
         "which is not printed), and r is a vector. Within the torque limit it chatters.",
         "A joint at a time, with a boundary layer; Gamma just above alpha is enough.",
-        switch=f"+{TRACKING}.cases.printed={{law:{{impedance:{{_target_:dexrepro.control.time_delay_impedance"
+        switch=f"+{TRACKING}.cases.as_printed={{law:{{impedance:{{_target_:dexrepro.control.time_delay_impedance"
         ".RobustImpedance,stiffness_gain:10.0,switching_gain:100.0,force_bound:1.0,boundary_layer:1e-9}}}",
         evidence=(f"{TRACKING}.robust_printed.rms_error", f"{TRACKING}.robust_printed.torque_travel",
                   f"{TRACKING}.robust_small.rms_error"),

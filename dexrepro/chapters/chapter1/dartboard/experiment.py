@@ -49,7 +49,7 @@ def _play(
 ) -> tuple[Hand, list[Any]]:
     """All six boards; hit points (y, z) [m] relative to the centres."""
     reach = config.press
-    hand = Hand(operator, scaling, rng, tool=boards()[0] + [-reach, 0.1, -0.1])
+    hand = Hand(operator, scaling, rng, tool=boards()[0] + [-reach, 0.1, -0.1], cutoff=config.speed_cutoff)
     hits = []
     for board in boards():
         hand.reach(board - [reach, 0.0, 0.0])

@@ -14,63 +14,82 @@ def _tracking(metric: str, first: str, second: str) -> Predicate:
     )
 
 
-_SMALLEST = every(_tracking("rmse", "proposed", "force"), _tracking("rmse", "proposed", "passive"))
-_LOST = less(f"{TRACKING}.c1_printed.rmse", f"{TRACKING}.c1_force.rmse")
+def _below(law: str, metric: str, bound: float, cases: tuple[str, ...] = CASES) -> Predicate:
+    return every(*(less(f"{TRACKING}.{case}_{law}.{metric}", bound) for case in cases))
+
+
+def _smallest(law: str) -> Predicate:
+    return every(_tracking("rmse", law, "force"), _tracking("rmse", law, "passive"))
+
+
+def _robust(law: str, spread: str) -> Predicate:
+    return every(less(f"{TRACKING}.{spread}", 0.1), _below(law, "rmse_late", 0.5))
+
+
+def _printed(metric: str, bound: float) -> Predicate:
+    return less(f"{TRACKING}.c1_printed.{metric}", bound)
+
 
 CLAIMS = (
     Claim(
         "C1.01",
         "1.10",
         "The proposed law has the smallest force error of the three controllers in all three cases.",
-        _SMALLEST,
-        printed=_LOST,
+        _smallest("proposed"),
+        control=_smallest("integral"),
+        printed=less(f"{TRACKING}.c1_printed.rmse", f"{TRACKING}.c1_force.rmse"),
         where="1.5.1",
-        note="The whole-run win in cases 1 and 2 comes from the larger gain (0.11 against 0.05 m/(s N)), the win after "
-        "5 s from the autoregressive part; see T1.S.",
+        note="Without its weights the law is an integral of the force error. It has the smallest error of the three as "
+        "well: {force_tracking.c1_integral.rmse:.3f}, {force_tracking.c2_integral.rmse:.3f} and "
+        "{force_tracking.c3_integral.rmse:.3f} N against {force_tracking.c1_proposed.rmse:.3f}, "
+        "{force_tracking.c2_proposed.rmse:.3f} and {force_tracking.c3_proposed.rmse:.3f} N. The win over the whole run "
+        "comes from the gain, the win after 5 s from the weights (C1.26, C1.29).",
     ),
     Claim(
         "C1.03",
         "1.10",
         "The reference reaches the position that gives the desired force.",
-        every(*(less(f"{TRACKING}.{case}_proposed.reference_error", 0.01) for case in CASES)),
+        _below("proposed", "reference_error", 0.01),
+        control=_below("integral", "reference_error", 0.01),
+        printed=_printed("reference_error", 0.01),
         where="1.5.1",
-        note="Root mean square of x_r - x_d after 5 s, bound 10 mm of the 200 mm that 10 N ask for.",
+        note="Root mean square of x_r - x_d after 5 s, bound 10 mm of the 200 mm that 10 N ask for. The law without "
+        "weights reaches it too.",
     ),
     Claim(
         "C1.04",
         "1.10",
         "It depends little on DFR's motion and on a stiffness of 40 to 60 N/m.",
-        every(
-            less(f"{TRACKING}.spread", 0.1),
-            *(less(f"{TRACKING}.{case}_proposed.rmse_late", 0.5) for case in CASES),
-        ),
+        _robust("proposed", "spread"),
+        control=_robust("integral", "integral_spread"),
+        printed=_printed("rmse_late", 0.5),
         where="1.5.1",
         note="Spread of the whole-run error, which the common start dominates, and an error after 5 s below 5 % of the "
-        "desired force. That late error does depend on motion and stiffness: 0.03, 0.11 and 0.23 N.",
+        "desired force. That late error does depend on both: {force_tracking.c1_proposed.rmse_late:.2f}, "
+        "{force_tracking.c2_proposed.rmse_late:.2f} and {force_tracking.c3_proposed.rmse_late:.2f} N.",
     ),
     Claim(
-        "C1.05a",
+        "C1.05",
         "1.10",
-        "The force error vanishes for a constant stiffness and a partner of constant velocity.",
-        less(f"{TRACKING}.c1_proposed.rmse_late", 0.1),
+        "The force error vanishes, while stiffness and velocity vary too (within 2.5 % of the desired force).",
+        _below("proposed", "rmse_late", 0.25),
+        control=_below("integral", "rmse_late", 0.25),
+        printed=_printed("rmse_late", 0.25),
+        readings={"within 1 %": _below("proposed", "rmse_late", 0.1)},
+        searched="the tolerance, 1 to 5 % of the desired force, and the start of what counts as late",
         where="1.4",
-    ),
-    Claim(
-        "C1.05b",
-        "1.10",
-        "The force error vanishes also while stiffness and velocity vary.",
-        every(*(less(f"{TRACKING}.{case}_proposed.rmse_late", 0.1) for case in ("c2", "c3"))),
-        where="1.4",
-        note="The bound of C1.05a. Constant weights that predict a smooth contact position exist (a difference "
-        "quotient: thousands a second), but the weights stay below 0.1 and act as an integral of the force error of "
-        "gain alpha N / L with N = Z.Z. What such a proportional-integral law leaves is the error seen (0.09 and 0.21 "
-        "N).",
+        note="With a constant stiffness and a partner of constant velocity it is {force_tracking.c1_proposed.rmse_late:"
+        ".2g} N. Where they vary it does not vanish: constant weights that predict a smooth contact position exist (a "
+        "difference quotient: thousands a second), but the weights stay below 0.1 and act as an integral of the force "
+        "error of gain alpha N / L with N = Z.Z. What such a proportional-integral law leaves is what is seen.",
     ),
     Claim(
         "C1.07",
         "1.10",
         "The reference can be used without waiting for the weights to converge.",
-        every(*(less(f"{TRACKING}.{case}_proposed.settling", 5.0) for case in CASES)),
+        _below("proposed", "settling", 5.0),
+        control=_below("integral", "settling", 5.0),
+        printed=_printed("settling", 5.0),
         where="1.1",
         note="Last instant with more than 5 % force error; the weights are still far from constant then.",
     ),
@@ -89,6 +108,6 @@ CLAIMS = (
         every(_tracking("rmse", "proposed_tuned", "force_tuned"), _tracking("rmse", "proposed_tuned", "passive_tuned")),
         source="ours",
         note="Twelve gains each (T1.H). Proposed law and force controller take the same gain, the largest tried, and "
-        "tie within 0.3 % over the whole run; after 5 s the proposed law is better.",
+        "all but tie over the whole run; after 5 s the proposed law is better.",
     ),
 )

@@ -14,6 +14,14 @@ def _holding(metric: str, first: str, second: str) -> Predicate:
     )
 
 
+def _least(metric: str, law: str) -> Predicate:
+    return every(_holding(metric, law, "passive"), _holding(metric, law, "fixed"))
+
+
+def _overshoot(law: str) -> Predicate:
+    return every(*(less(f"{HOLDING}.{trial}_{law}.overshoot", 0.1) for trial in TRIALS))
+
+
 PRINTED = {  # RMS force error [N], Section 1.5.2.2: proposed, impedance, fixed distance
     "t1": (0.87, 1.22, 2.48),
     "t2": (0.82, 1.21, 2.61),
@@ -24,44 +32,72 @@ CLAIMS = (
     Claim(
         "C1.10",
         "1.19",
-        "The object is rotated by pi/4 without a twist between the hands.",
-        every(*(less(f"{HOLDING}.{trial}_proposed.twist", 2.0) for trial in TRIALS)),
+        "With the quaternion rule the object is rotated by pi/4 without a twist between the hands.",
+        every(*(less(f"{HOLDING}.{trial}_proposed.turned", 5.0) for trial in TRIALS)),
+        control=less(f"{HOLDING}.t1_unturned.turned", 5.0),
+        credits="the quaternion rule (1.14)",
         where="1.5.2.2",
-        note="Largest relative rotation about the holding line [deg] of two torque-controlled arms.",
+        note="Largest rotation of one tool against the other [deg], of two torque-controlled arms: "
+        "{hold_and_move.t1_proposed.turned:.2g}, and {hold_and_move.t1_unturned.turned:.0f} where AFR keeps the "
+        "orientation it starts with. Whether it stays below the bound, which is ours, depends on object and arms "
+        "(study).",
     ),
     Claim(
         "C1.23a",
         "1.18",
         "After the 8th second the force error is smallest with the proposed law, on all three trajectories.",
-        every(_holding("rmse", "proposed", "passive"), _holding("rmse", "proposed", "fixed")),
+        _least("rmse", "proposed"),
+        control=_least("rmse", "integral"),
         printed=less(f"{HOLDING}.t1_printed.rmse", f"{HOLDING}.t1_passive.rmse"),
         where="1.5.2.2",
-        note="Absolute values are set by sensor noise and object; one late sample or a stiff object turns it round.",
+        note="Absolute values are set by sensor noise and object; one late sample or a stiff object turns it round. "
+        "Without its weights the law errs by {hold_and_move.t1_integral.rmse:.4f} N on the first trajectory, with them "
+        "by {hold_and_move.t1_proposed.rmse:.4f} N: at these gains they do nothing.",
     ),
     Claim(
         "C1.23b",
         "1.18",
         "Passive impedance holds better than a fixed distance.",
         _holding("rmse", "passive", "fixed"),
+        control=less(f"{HOLDING}.t1_passive_calm.rmse", f"{HOLDING}.t1_fixed_calm.rmse"),
         where="1.5.2.2",
-        note="The printed impedance is close to its stability limit: where object and arms vary it loses more often "
-        "than it wins (study).",
+        note="It does so too with an object in which nothing varies. The printed impedance is close to its stability "
+        "limit: where object and arms vary it often loses (study).",
     ),
     Claim(
         "C1.24a",
         "1.18",
         "The proposed law reaches the desired force fastest.",
-        every(_holding("settling", "proposed", "passive"), _holding("settling", "proposed", "fixed")),
+        _least("settling", "proposed"),
+        control=less(f"{HOLDING}.t1_passive_tuned.settling", f"{HOLDING}.t1_proposed.settling"),
+        printed=less(f"{HOLDING}.t1_printed.settling", f"{HOLDING}.t1_passive.settling"),
         where="1.5.2.2",
-        note="Into a band of 10 %. The first crossing of 95 % ties with the fixed distance: one speed limit for all.",
+        note="Into a band of 10 %; the control is the passive impedance with the best of twelve dampings. The first "
+        "crossing of 95 % ties with the fixed distance: one speed limit for all.",
     ),
     Claim(
         "C1.24b",
         "1.18",
         "with negligible overshoot.",
-        every(*(less(f"{HOLDING}.{trial}_proposed.overshoot", 0.1) for trial in TRIALS)),
+        _overshoot("proposed"),
+        control=_overshoot("passive"),
+        printed=less(f"{HOLDING}.t1_printed.overshoot", 0.1),
         where="1.5.2.2",
-        note="Negligible: within the band of C1.24a; 7 to 8 % here.",
+        note="Negligible: within the band of C1.24a; {hold_and_move.t3_proposed.overshoot:.1%} to "
+        "{hold_and_move.t2_proposed.overshoot:.1%} here, which is close to it (study).",
+    ),
+    Claim(
+        "C1.25",
+        "1.18",
+        "The fast rise with negligible overshoot demonstrates that the adaptation law converges fast.",
+        every(_least("settling", "proposed"), _overshoot("proposed")),
+        control=every(_least("settling", "integral"), _overshoot("integral")),
+        credits="the adaptation law (1.29), (1.30)",
+        printed=less(f"{HOLDING}.t1_printed.settling", f"{HOLDING}.t1_passive.settling"),
+        where="1.5.2.2",
+        note="Without weights the law is as fast, into the band after {hold_and_move.t1_integral.settling:.2f} against "
+        "{hold_and_move.t1_proposed.settling:.2f} s, and overshoots as little. The rise is the force term's of (1.32), "
+        "whose other terms cancel (1.29) but for W.Z; only at gains below 0.05 do the weights shorten it (T1.S).",
     ),
     Claim(
         "C1.31",
@@ -88,7 +124,7 @@ CLAIMS = (
 )
 
 REFERENCES = tuple(
-    Reference(f"hold_and_move.{trial}_{law}.rmse", value, "1.5.2.2", "N")
+    Reference(f"hold_and_move.{trial}_{law}.rmse_measured", value, "1.5.2.2", "N")
     for trial, values in PRINTED.items()
     for law, value in zip(("proposed", "passive", "fixed"), values)
 )

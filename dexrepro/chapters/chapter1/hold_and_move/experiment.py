@@ -34,6 +34,7 @@ from dexrepro.robots.kinematics import forward
 from dexrepro.robots.rotations import quaternion_from_rotation, rotation_from_quaternion
 
 RATE = 50.0
+HELD = ("rmse_measured", "overshoot", "twist", "turned", "pointing", "lag", "slip")  # undefined once it has fallen
 SIDES = {"leader": "right", "follower": "left"}
 LEVEL = np.stack([(0.0, 0.0, -1.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], axis=1)  # R_D while the line is level
 VIEW = Camera(target=(0.5, 0.0, 0.3), distance=1.45, yaw=75.0, pitch=-18.0)
@@ -108,7 +109,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
             last["measured"] = force
             reference = float(law(sense.time, distance - contact, force))
             target = path.position[k] + axis * (contact + reference)  # Eq. (1.33) from the first contact on
-            return followers["follower"].go(sense, target, facings[k])
+            return followers["follower"].go(sense, target, facings[k if config.facing else 0])
 
         recording = world.run(
             config.duration,
@@ -176,6 +177,8 @@ def _condense(recording: Recording, path: HoldPath, world: World, config: Config
         "lag": np.linalg.norm(poses["leader"][0] - path.position[:n], axis=1),
         # Turn of one tool against the other about the holding line.
         "twist": np.arctan2(relative[:, 1, 0], relative[:, 0, 0]),
+        # Turn of one tool against the other about whatever axis.
+        "turned": np.arccos(np.clip((np.trace(relative, axis1=1, axis2=2) - 1) / 2, -1, 1)),
         "pointing": angle_between(between, path.axis[:n]),
         "slip": recording["grip.slip"],
         "object": recording["object.pose"],
@@ -186,8 +189,11 @@ def _condense(recording: Recording, path: HoldPath, world: World, config: Config
 def measure(recording: Recording, config: Config) -> Metrics:
     time, force, desired = recording.time, recording["force"], config.desired_force
     late = recording.between(config.settled)
-    if not late.any():
-        return {"rmse": desired, "finished": 0}
+    if recording.status != "finished":
+        # A dropped object has the worst score in every comparison, whenever it fell.
+        return {"rmse": desired, "rise": config.duration, "settling": config.duration, "finished": 0} | dict.fromkeys(
+            HELD
+        )
     error = force - desired
     rise = np.flatnonzero(force >= 0.95 * desired)
     early = time < config.settled
@@ -198,10 +204,11 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "overshoot": float(max(0.0, force[early].max() / desired - 1.0)),
         "settling": last_outside(time[early], error[early], 0.1 * desired),
         "twist": float(np.rad2deg(np.abs(recording["twist"] - recording["twist"][0]).max())),
+        "turned": float(np.rad2deg(recording["turned"].max())),
         "pointing": float(np.rad2deg(recording["pointing"].max())),
         "lag": float(recording["lag"].max()),
         "slip": float(recording["slip"][-1]),
-        "finished": int(recording.status == "finished"),
+        "finished": 1,
     }
 
 

@@ -69,7 +69,7 @@ def _growth(config: Config) -> Recording:
     n = round(config.long / dt)
     partner = np.minimum(config.ramp_end, config.ramp_speed * dt * np.arange(n))
     stiffness = np.full(n, config.stiffness)
-    law = _law(config, dt, estimator_gain=gains)
+    law = _law(config, dt, estimator_gain=gains, printed=config.printed)
     force = press(law, partner, stiffness, dt=dt, unilateral=False, batch=len(gains))["force"]
     error = np.abs(force - config.desired_force)
     blocks = error.reshape(10, n // 10, -1).max(axis=1)
@@ -81,7 +81,7 @@ def _growth(config: Config) -> Recording:
 def measure(recording: Recording, config: Config) -> Metrics:
     if config.study == "growth":
         frame = recording.frames["growth"]
-        # From 30-40 s, when the partner has come to rest, to 90-100 s.
+        # From the fourth tenth of the run, when the partner has come to rest, to the last.
         result: Metrics = {
             f"growth_{column.replace('.', 'p')}": float(frame[column].iloc[9] / frame[column].iloc[3])
             for column in frame.columns[1:]

@@ -2,9 +2,22 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, every, greater, less, within
+from dexrepro.claims import Claim, Predicate, every, greater, less, within
 
 READY = "ready_to_hold"
+
+
+def _in_time(case: str) -> Predicate:
+    return within(f"{READY}.{case}.own_before_partner", -1.5, 1.5)
+
+
+def _waits_and_assists(case: str) -> Predicate:
+    return every(greater(f"{READY}.{case}.clearance", 0.0), _in_time(case))
+
+
+def _points(case: str) -> Predicate:
+    return every(less(f"{READY}.{case}.facing", 2.0), less(f"{READY}.{case}.pointing", 10.0))
+
 
 CLAIMS = (
     Claim(
@@ -12,48 +25,46 @@ CLAIMS = (
         "1.16",
         "AFR follows the moving object and does not touch it before DFR approaches.",
         every(less(f"{READY}.adjustable.lag_most", 0.05), greater(f"{READY}.adjustable.clearance", 0.03)),
+        control=every(less(f"{READY}.constant.lag_most", 0.05), greater(f"{READY}.constant.clearance", 0.03)),
         where="1.5.2.1",
-        note="Both bounds are ours, and with other gains of the field, none of which is printed, it mostly exceeds one "
-        "of them (study).",
+        note="The control has constant weights. Both bounds are ours, and with other gains of the field, none of "
+        "which is printed, it mostly exceeds one of them (study).",
     ),
     Claim(
         "C1.19",
         "1.16",
         "The adjustable weights are what lets AFR wait and then assist.",
-        every(
-            less(f"{READY}.constant.clearance", 0.0),
-            less(f"{READY}.partner_only.clearance", 0.0),
-            greater(f"{READY}.ready_only.clearance", 0.0),
-            greater(f"{READY}.adjustable.clearance", 0.0),
-        ),
+        _waits_and_assists("adjustable"),
+        control=_waits_and_assists("constant"),
+        credits="the adjustable weights (1.21)",
         where="1.3.4",
-        note="Constant weights, or the partner's field alone, press into the object before DFR comes; the other two "
-        "fields alone never touch it.",
+        note="It keeps clear until DFR approaches and reaches the surface within 1.5 s of it. With constant weights it "
+        "presses in by {ready_to_hold.constant.clearance:.3f} m before DFR comes, with the partner's field alone by "
+        "{ready_to_hold.partner_only.clearance:.3f} m; the other two fields alone keep clear and never touch.",
     ),
     Claim(
-        "C1.20a",
+        "C1.20",
         "1.16e",
-        "AFR comes to the object when DFR does, and not before DFR approaches.",
-        within(f"{READY}.adjustable.own_before_partner", -1.5, 1.5),
+        "When DFR touches the object AFR assists in holding at the right time.",
+        _in_time("adjustable"),
+        control=_in_time("constant"),
+        readings={"not before DFR touches": less(f"{READY}.adjustable.own_before_partner", 0.0)},
         where="1.5.2.1",
-        note="Difference of the instants at which the two end points reach the surface [s].",
-    ),
-    Claim(
-        "C1.20b",
-        "1.16e",
-        "AFR assists at the right time: not before DFR touches the object.",
-        less(f"{READY}.adjustable.own_before_partner", 0.0),
-        where="1.5.2.1",
-        note="For any varpi below 2 the field lets AFR touch first: at a distance of r / (varpi - 1) > r. With varpi "
-        "= 2, or with a third of the compliance, it touches after DFR (T1.E).",
+        note="Right: the two reach the surface within 1.5 s of each other; AFR comes "
+        "{ready_to_hold.adjustable.own_before_partner:.1f} s first. For any varpi below 2 the field lets AFR touch "
+        "first: at a distance of r / (varpi - 1) > r. With varpi = 2, or with a third of the compliance, it touches "
+        "after DFR (T1.E).",
     ),
     Claim(
         "C1.21",
         "1.16f",
         "AFR keeps facing and pointing to DFR while DFR rotates.",
-        every(less(f"{READY}.adjustable.facing", 2.0), less(f"{READY}.adjustable.pointing", 10.0)),
+        _points("adjustable"),
+        control=_points("unturned"),
+        credits="the quaternion rule (1.14)",
         where="1.5.2.1",
-        note="The tools' axes are opposite to well below 1 deg; the line between the hands lags by several degrees "
-        "because the field follows DFR's rotation slowly.",
+        note="The tools' axes are opposite to within {ready_to_hold.adjustable.facing:.2f} deg; the line between the "
+        "hands lags by up to {ready_to_hold.adjustable.pointing:.1f} deg because the field follows DFR's rotation "
+        "slowly. The control keeps the orientation it starts with.",
     ),
 )

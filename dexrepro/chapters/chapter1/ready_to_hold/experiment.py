@@ -132,7 +132,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
         def follow(sense: Any) -> Any:
             k = round(sense.time / dt)
             target = field(plan["position"][k], axes[k], seen[k])
-            return followers["follower"].go(sense, target, facings[k])
+            return followers["follower"].go(sense, target, facings[k if config.facing else 0])
 
         def shoot(name: str) -> None:
             images[name] = world.render(camera=VIEW, size=(280, 230))
@@ -206,8 +206,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "own_contact": _first(time, clearance <= 0),
         "partner_contact": _first(time, partner <= 1e-3),
     }
-    if result["own_contact"] is not None and result["partner_contact"] is not None:
-        result["own_before_partner"] = result["partner_contact"] - result["own_contact"]
+    own, other = result["own_contact"], result["partner_contact"]
+    result["own_before_partner"] = None if own is None or other is None else other - own
     if held.any():
         result |= {
             "facing": float(np.rad2deg(recording["facing"][held].max())),

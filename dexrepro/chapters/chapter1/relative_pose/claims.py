@@ -10,6 +10,7 @@ CLAIMS = (
         "1.6",
         "Eq. (1.14) makes AFR face DFR for every orientation.",
         every(less("relative_pose.default.facing", 1e-12), less("relative_pose.default.euler", 1e-12)),
+        no_control="An identity of unit quaternions; one orientation for which it failed would refute it.",
         where="Lemma 1.1",
     ),
     Claim(
@@ -17,6 +18,7 @@ CLAIMS = (
         "1.5",
         "Re-fixing makes no jump, and afterwards the tool turns as the leader does.",
         every(less("relative_pose.default.fixing_jump", 1e-12), less("relative_pose.default.fixing_rotation", 1e-12)),
+        no_control="An identity: (1.11) at the instant of the fixing.",
         where="1.3.1",
     ),
     Claim(

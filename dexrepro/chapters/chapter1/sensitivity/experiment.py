@@ -16,6 +16,7 @@ import pandas as pd
 from scipy import signal
 
 from dexrepro.arrays import Rng
+from dexrepro.chapters.chapter1.force_tracking.experiment import motion, stiffness
 from dexrepro.chapters.chapter1.hold_path import hold_path
 from dexrepro.chapters.chapter1.line import carry, press
 from dexrepro.control.force_control import IntegralForceControl
@@ -25,7 +26,8 @@ from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.physics.soft_object import Cushion
 
 RATE = 100.0
-FORCE, LATE = 10.0, 5.0
+CASES = ("c1", "c2", "c3")
+LATE = 5.0  # s
 GAINS = {  # twelve values each; the printed ones lie inside
     "proposed": np.geomspace(0.02, 1.0, 12),
     "force": np.geomspace(0.02, 1.0, 12),
@@ -41,34 +43,42 @@ def simulate(config: Config, rng: Rng) -> Recording:
 
 
 def _motions(config: Config) -> tuple[Any, Any]:
-    """Partner [m] and stiffness [N/m] of the three cases, shape (n, 3)."""
+    """Partner [m] and stiffness [N/m] of the three cases of ``force_tracking``, shape (n, 3)."""
     t = config.step * np.arange(round(config.duration / config.step))
-    ramp, sine = np.minimum(0.35, 0.015 * t), 0.2 * np.sin(0.3 * t)
-    swing = 10.0 * np.sin(0.5 * t)
-    return np.stack([ramp, ramp, sine], 1), np.stack([0 * t, swing, swing], 1) + 50.0
+    cases = [Config({**config.figure, **case}) for case in config.figure.cases]
+    partner, elastic = (np.stack([part(case, t) + 0.0 * t for case in cases], 1) for part in (motion, stiffness))
+    return partner, elastic
 
 
 def _proposed(config: Config, **changes: Any) -> AutoregressiveHolding:
-    values = {"dt": config.step, "desired_force": FORCE, "gain": 0.11, "estimator_gain": 2.0, "adaptation": 1e-4,
-              "lags": 3}  # fmt: skip
+    f = config.figure
+    values = {"dt": config.step, "desired_force": f.desired_force, "gain": f.law.gain, "lags": f.law.lags,
+              "estimator_gain": f.law.estimator_gain, "adaptation": f.law.adaptation}  # fmt: skip
     return AutoregressiveHolding(**(values | changes))
 
 
+def _force(config: Config, rate: Any) -> IntegralForceControl:
+    return IntegralForceControl(rate=rate, desired_force=config.figure.desired_force, dt=config.step)
+
+
 def _passive(config: Config, damping: Any) -> PassiveImpedance:
-    return PassiveImpedance(dt=config.step, mass=6.0, damping=damping, desired_force=FORCE)
+    f = config.figure
+    return PassiveImpedance(dt=config.step, mass=f.passive.mass, damping=damping, desired_force=f.desired_force)
 
 
 def _tracking(config: Config) -> Recording:
-    partner, stiffness = _motions(config)
+    partner, elastic = _motions(config)
+    figure, desired = config.figure, config.figure.desired_force
     rows: list[dict[str, Any]] = []
     errors: dict[str, Any] = {}
 
     def run(law: Any, names: list[str], lag: Any = 0.0) -> None:
         """One batch: every named variant in the three cases."""
         many = len(names)
-        wide = [np.repeat(part, many, axis=1) for part in (partner, stiffness)]
+        wide = [np.repeat(part, many, axis=1) for part in (partner, elastic)]
         late = np.tile(np.broadcast_to(lag, many), 3)
-        error = press(law, *wide, dt=config.step, lag=late, batch=3 * many)["force"] - FORCE
+        with np.errstate(all="ignore"):  # the printed signs run away
+            error = press(law, *wide, dt=config.step, lag=late, batch=3 * many)["force"] - desired
         for k, name in enumerate(names):
             mine = error[:, k::many]
             errors[name] = mine
@@ -80,30 +90,36 @@ def _tracking(config: Config) -> Recording:
     def thrice(values: Any) -> Any:
         return np.tile(np.asarray(values, float), 3)
 
-    gains = [0.11, 0.05, 0.3, 1.0, 0.11, 0.11, 0.11, 0.11]
-    estimators = [2.0, 2.0, 2.0, 2.0, 0.5, 20.0, 2.0, 2.0]
+    own, rate = figure.law.gain, figure.force_rate
+    gains = [own, rate, 0.3, 1.0, own, own, own, own]
+    estimators = [figure.law.estimator_gain] * 4 + [0.5, 20.0] + [figure.law.estimator_gain] * 2
     lags = [0.0] * 6 + [0.05, 0.2]
-    names = ["proposed", "proposed, alpha 0.05", "proposed, alpha 0.3", "proposed, alpha 1", "proposed, L 0.5",
-             "proposed, L 20", "proposed, lag 0.05 s", "proposed, lag 0.2 s"]  # fmt: skip
+    names = ["proposed", "proposed, gain of the force controller", "proposed, alpha 0.3", "proposed, alpha 1",
+             "proposed, L 0.5", "proposed, L 20", "proposed, lag 0.05 s", "proposed, lag 0.2 s"]  # fmt: skip
     run(_proposed(config, gain=thrice(gains), estimator_gain=thrice(estimators)), names, lags)
     run(_proposed(config, adapt=False), ["proportional"])
+    run(_proposed(config, printed=True), ["printed"])
     run(_proposed(config, lags=10), ["proposed, 10 lags"])
-    run(Compliant(law=_proposed(config), impedance=_passive(config, 2.0)), ["proposed, compliant"])
-    rates = [0.05, 0.005, 0.5, 0.11]
-    force = ["force", "force, 10 ms samples", "force, gain 0.5", "force, gain 0.11"]
-    run(IntegralForceControl(rate=thrice(rates), desired_force=FORCE, dt=config.step), force)
+    run(Compliant(law=_proposed(config), impedance=_passive(config, figure.passive.damping)), ["proposed, compliant"])
+    rates = [rate, rate / 10, 10 * rate, own]
+    force = ["force", "force, 10 ms samples", "force, ten times the gain", "force, gain of the proposed law"]
+    run(_force(config, thrice(rates)), force)
     damping = ["passive", "passive, D 10", "passive, critical D"]
-    run(_passive(config, thrice([2.0, 10.0, 2 * np.sqrt(300.0)])), damping)
+    critical = 2 * np.sqrt(figure.passive.mass * figure.stiffness)
+    run(_passive(config, thrice([figure.passive.damping, 10.0, critical])), damping)
     tuned = ["{} {:.3g}", config.tuning_lag]
     for name, law in (
         ("proposed", _proposed(config, gain=thrice(GAINS["proposed"]))),
-        ("force", IntegralForceControl(rate=thrice(GAINS["force"]), desired_force=FORCE, dt=config.step)),
+        ("force", _force(config, thrice(GAINS["force"]))),
         ("passive", _passive(config, thrice(GAINS["passive"]))),
     ):
         run(law, [f"tuning {name} {value:.4g}" for value in GAINS[name]], tuned[1])
-    best = {"proposed": "proposed", "force": "force", "passive": "passive"}
-    magnitude = np.stack([np.abs(errors[name]) for name in best], axis=0)
-    winner = pd.DataFrame({f"c{i + 1}": [np.mean(np.argmin(magnitude[:, :, i], axis=0) == 0)] for i in range(3)})
+    winner = pd.DataFrame()
+    for name in ("proposed", "proportional", "printed"):
+        # An error that is no number is the largest.
+        magnitude = np.stack([np.nan_to_num(np.abs(errors[law]), nan=np.inf) for law in (name, "force", "passive")])
+        share = [np.mean(np.argmin(magnitude[:, :, i], axis=0) == 0) for i in range(3)]
+        winner[name] = share
     return Recording(frames={"variants": pd.DataFrame(rows), "best": winner}, steps=len(rows) * len(partner))
 
 
@@ -115,37 +131,51 @@ DELAYS = (0, 1, 2)
 
 def _carrying(config: Config, rng: Rng) -> Recording:
     scenes = _scene(config, rng)
-    noise = 0.3 * rng("force sensor").standard_normal(len(scenes["partner"]) + 1)
+    noise = config.task.sensor.noise * rng("force sensor").standard_normal(len(scenes["partner"]) + 1)
     rows = []
-    stiffness, delay = (part.ravel() for part in np.meshgrid(STIFFNESSES, DELAYS))
-    for name, law in _carried(len(stiffness)).items():
-        rows += _carry_batch(config, law, name, stiffness, scenes, noise, delay)
+    elastic, delay = (part.ravel() for part in np.meshgrid(STIFFNESSES, DELAYS))
+    for name, law in _carried(config, len(elastic)).items():
+        rows += _carry_batch(config, law, name, elastic, scenes, noise, delay)
     for name, values in GAINS.items():
         if name == "passive":
-            law = PassiveImpedance(dt=0.01, mass=10.0, damping=values, desired_force=15.0)
+            law = _carried_passive(config, values)
         else:
-            law = _carried(len(values), values)["proposed" if name == "proposed" else "proportional"]
-        tried = _carry_batch(config, law, name, np.full(len(values), 100.0), scenes, noise, 0 * values)
+            law = _carried(config, len(values), values)["proposed" if name == "proposed" else "proportional"]
+        tried = _carry_batch(
+            config, law, name, np.full(len(values), config.task.object.stiffness), scenes, noise, 0 * values
+        )
         rows += [row | {"law": f"tuning {name}", "gain": value} for row, value in zip(tried, values)]
     return Recording(frames={"variants": pd.DataFrame(rows)}, steps=len(rows) * len(scenes["partner"]))
 
 
-def _carried(many: int, values: Any = None) -> dict[str, Any]:
+def _carried(config: Config, many: int, values: Any = None) -> dict[str, Any]:
     """The laws of Fig. 1.18 for a batch, with printed gains or with ``values``."""
 
     def holding(gain: Any, **changes: Any) -> AutoregressiveHolding:
-        return AutoregressiveHolding(dt=0.01, desired_force=15.0, gain=gain, estimator_gain=50.0, adaptation=1e-4,
-                                     lags=2, speed_limit=0.3, **changes)  # fmt: skip
+        law = {key: task.law[key] for key in ("estimator_gain", "adaptation", "lags")}
+        return AutoregressiveHolding(dt=task.control_period, desired_force=task.desired_force, gain=gain,
+                                     speed_limit=task.speed_limit, **(law | changes))  # fmt: skip
+
+    task = config.task
 
     return {
-        "proposed": holding(0.25 if values is None else values),
-        "fixed": FixedDistance(dt=0.01, displacement=-0.15, speed=0.3),
+        "proposed": holding(task.law.gain if values is None else values),
+        "fixed": _distance(task, task.object.stiffness),
         "proportional": holding(0.05 if values is None else values, adapt=False),
         "proposed, own gain": holding(TUNED["proposed"]),
-        "passive, own gain": PassiveImpedance(
-            dt=0.01, mass=10.0, damping=np.full(many, TUNED["passive"]), desired_force=15.0
-        ),
+        "passive, own gain": _carried_passive(config, np.full(many, TUNED["passive"])),
     }
+
+
+def _carried_passive(config: Config, damping: Any) -> PassiveImpedance:
+    task = config.task
+    return PassiveImpedance(dt=task.control_period, mass=task.passive_mass, damping=damping,
+                            desired_force=task.desired_force, speed_limit=task.speed_limit)  # fmt: skip
+
+
+def _distance(task: Config, stiffness: Any) -> FixedDistance:
+    """Held so close that the object at rest pushes with the desired force."""
+    return FixedDistance(dt=task.control_period, displacement=-task.desired_force / stiffness, speed=task.speed_limit)
 
 
 TUNED = {"proposed": 0.1689, "passive": 12.33}  # the best of GAINS on the nominal object; checked by ``tuned_gap``
@@ -160,10 +190,9 @@ def _scene(config: Config, rng: Rng) -> dict[str, Any]:
     b, a = signal.butter(1, 0.5, fs=1.0 / config.carry_step)
     beans = signal.lfilter(b, a, rng("filling").standard_normal(len(time)))
     phase = rng("stiffness phase").uniform(0, 2 * np.pi)
-    weight = 0.3 * 9.81 * np.sin(np.interp(time, slow, path.tilt)) + 0.3 * beans / beans.std()
-    scale = 1.0 + config.task.object.modulation * np.sin(
-        2 * np.pi * time / config.task.object.modulation_period + phase
-    )
+    o = config.task.object
+    weight = o.mass * 9.81 * np.sin(np.interp(time, slow, path.tilt)) + o.shifting * beans / beans.std()
+    scale = 1.0 + o.modulation * np.sin(2 * np.pi * time / o.modulation_period + phase)
     return {"partner": np.interp(time, slow, along - along[0]), "weight": weight, "scale": scale, "time": time}
 
 
@@ -175,12 +204,14 @@ def _carry_batch(
     cushions = (Cushion(stiffness, dt, **parts), Cushion(stiffness, dt, **parts))
     # 0.38 m holds each object with the desired force, so that no stiffness favours the fixed distance.
     if name == "fixed":
-        law = FixedDistance(dt=0.01, displacement=-15.0 / stiffness, speed=0.3)
+        law = _distance(config.task, stiffness)
     with np.errstate(all="ignore"):
-        force = carry(law, scenes, cushions, mass=o.mass, length=o.length, period=round(0.01 / dt), dt=dt,
+        force = carry(law, scenes, cushions, mass=o.mass, length=o.length, dt=dt,
+                      period=round(config.task.control_period / dt), speed=config.task.speed_limit,
                       lag=config.follower_lag, noise=noise, delay=delay.astype(int), batch=len(stiffness))  # fmt: skip
-    error = np.sqrt(np.mean((force[scenes["time"] >= 8.0] - 15.0) ** 2, axis=0))
-    risen = force >= 0.95 * 15.0
+    desired = config.task.desired_force
+    error = np.sqrt(np.mean((force[scenes["time"] >= config.task.settled] - desired) ** 2, axis=0))
+    risen = force >= 0.95 * desired
     rise = np.where(risen.any(axis=0), scenes["time"][risen.argmax(axis=0)], scenes["time"][-1])
     return [
         {"law": name, "stiffness": k, "delay": int(d), "rmse": float(min(e, 99.0)) if np.isfinite(e) else 99.0,
@@ -196,13 +227,18 @@ def measure(recording: Recording, config: Config) -> Metrics:
     variants: Any = recording.frames["variants"]
     if config.study == "tracking":
         table: Any = variants.set_index("variant")
-        result: Metrics = {f"best_{case}": float(recording.frames["best"][case].iloc[0]) for case in ("c1", "c2", "c3")}
-        keys = {"proposed": "proposed", "equal": "proposed, alpha 0.05", "proportional": "proportional",
-                "force": "force", "fast_force": "force, gain 0.5", "same_force": "force, gain 0.11",
+        best: Any = recording.frames["best"]
+        result: Metrics = {f"best_{case}": float(best.loc[i, "proposed"]) for i, case in enumerate(CASES)}
+        for name in ("proportional", "printed"):
+            result |= {f"best_{name}_{case}": float(best.loc[i, name]) for i, case in enumerate(CASES)}
+        keys = {"proposed": "proposed", "equal": "proposed, gain of the force controller",
+                "proportional": "proportional",
+                "force": "force", "fast_force": "force, ten times the gain",
+                "same_force": "force, gain of the proposed law",
                 "passive": "passive", "critical": "passive, critical D", "lagging": "proposed, lag 0.2 s",
                 "compliant": "proposed, compliant"}  # fmt: skip
         for key, name in keys.items():
-            for column in ("c1", "c2", "c3", "late1", "late2", "late3"):
+            for column in (*CASES, "late1", "late2", "late3"):
                 result[f"{key}_{column}"] = float(table.loc[name, column])
         for law in GAINS:
             tried = table[table.index.str.startswith(f"tuning {law} ")][["c1", "c2", "c3"]].mean(axis=1)
@@ -211,9 +247,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
         return result
     result = {}
     for (law, delay), rows in variants[variants["gain"].isna()].groupby(["law", "delay"]):
-        for stiffness in (50, 100, 200, 600):
+        for elastic in (50, 100, 200, 600):
             name = law.replace(", own gain", "_own")
-            result[f"{name}_k{stiffness}_d{delay}"] = float(rows.loc[rows["stiffness"] == stiffness, "rmse"].iloc[0])
+            result[f"{name}_k{elastic}_d{delay}"] = float(rows.loc[rows["stiffness"] == elastic, "rmse"].iloc[0])
     for law in GAINS:
         rows = variants[variants["law"] == f"tuning {law}"]
         row = rows.loc[rows["rmse"].idxmin()]

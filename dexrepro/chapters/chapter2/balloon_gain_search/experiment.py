@@ -17,7 +17,7 @@ from dexrepro.experiment import Config, Recording
 from dexrepro.physics.sensor import smoothing
 
 measure = gain_search.measure
-FADED = ("force", "force_integral")  # laws that would otherwise step at contact
+FADED = ("force", "force_integral", "passive_impedance")  # laws that would otherwise step at contact
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
@@ -62,4 +62,5 @@ def _force_rmse(runs: pd.DataFrame, config: Config, noise: np.random.Generator) 
 
 def _faded(law: Any, config: Config) -> FadeIn:
     run = config.run
-    return FadeIn(law=law, smoothing_rate=run.smoothing_rate, smoothing_power=run.smoothing_power, dt=config.step)
+    return FadeIn(law=law, desired_force=config.desired_force, smoothing_rate=run.fade_rate,
+                  smoothing_power=run.smoothing_power, dt=config.step)  # fmt: skip

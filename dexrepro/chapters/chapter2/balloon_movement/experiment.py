@@ -74,9 +74,10 @@ def measure(recording: Recording, config: Config) -> Metrics:
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """By how much a law's force error exceeds the proposed law's, on the line and on the circle [N]."""
     result: Metrics = {}
-    for case in ("force", "passive"):
+    for case in ("force", "passive", "tuned_force", "tuned_passive", "no_impedance"):
+        own = "tuned_proposed" if case.startswith("tuned") else "proposed"
         for phase in ("line", "circle"):
-            pair = [metrics.get(name, {}).get(f"rmse_{phase}") for name in (case, "proposed")]
+            pair = [metrics.get(name, {}).get(f"rmse_{phase}") for name in (case, own)]
             if pair[0] is not None and pair[1] is not None:
-                result[f"{case}_excess_{phase}"] = pair[0] - pair[1]
+                result[f"{'lead' if case == 'no_impedance' else case}_excess_{phase}"] = pair[0] - pair[1]
     return result

@@ -52,8 +52,11 @@ def measure(recording: Recording, config: Config) -> Metrics:
 
 
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
-    """Distance [m] between the places that the two starts lead to."""
-    places = [[found[f"final_{axis}"] for axis in "xyz"] for found in metrics.values() if "final_x" in found]
-    if len(places) < 2:
-        return {}
-    return {"destination_spread": float(np.linalg.norm(np.ptp(np.array(places, dtype=float), axis=0)))}
+    """Distance [m] between the places that the two starts lead to, with and without the regulation."""
+    result: Metrics = {}
+    for name, start in (("destination_spread", "off"), ("unregulated_spread", "unregulated")):
+        found = [metrics[case] for case in (f"{start}_80", f"{start}_100") if case in metrics]
+        if len(found) == 2:
+            places = np.array([[values[f"final_{axis}"] for axis in "xyz"] for values in found], dtype=float)
+            result[name] = float(np.linalg.norm(np.ptp(places, axis=0)))
+    return result

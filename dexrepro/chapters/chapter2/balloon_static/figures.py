@@ -27,9 +27,16 @@ FILM = Film(
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
+    recordings = {case: run for case, run in recordings.items() if case.startswith("off")}
     if len(recordings) < 2:
         return {}
     return {"2.9": _draw_setup(recordings, config), "2.10": _draw_paths(recordings, metrics, config)}
+
+
+def _off(config: Config, case: str) -> str:
+    """How far off the line a case starts; in x and in z where the two differ."""
+    sizes = np.atleast_1d(config.cases[case].discrepancy)
+    return " and ".join(f"{size:g}" for size in dict.fromkeys(sizes.tolist())) + " m off"
 
 
 def _draw_setup(recordings: Recordings, config: Config) -> Drawing:
@@ -43,9 +50,7 @@ def _draw_setup(recordings: Recordings, config: Config) -> Drawing:
     front.plot(1e3 * leader[0], 1e3 * leader[2], "s", color=style.PLAIN, label="partner (right arm)")
     for (case, run), line in zip(recordings.items(), ("book", "rival")):
         x, z = 1e3 * run["follower.tip"][0, [0, 2]]
-        front.plot(
-            x, z, "o", color=style.LINES[line]["color"], label=f"follower, {config.cases[case].discrepancy:g} m off"
-        )
+        front.plot(x, z, "o", color=style.LINES[line]["color"], label=f"follower, {_off(config, case)}")
         front.annotate("", 1e3 * leader[[0, 2]], (x, z), arrowprops={"arrowstyle": "<->", "lw": 0.6})
     front.set(xlabel="x [mm]", ylabel="z [mm]", aspect="equal", xlim=(600, 820), ylim=(210, 400))
     front.legend(loc="upper left")
@@ -60,7 +65,7 @@ def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
     figure, grid = style.subplots(2, 2, height=4.4)
     for axes, (first, second), letter in ((grid[0, 0], (0, 2), "a"), (grid[0, 1], (1, 2), "b")):
         for (case, run), line in zip(recordings.items(), ("book", "rival")):
-            tip, label = 1e3 * run["follower.tip"], f"{config.cases[case].discrepancy:g} m off"
+            tip, label = 1e3 * run["follower.tip"], _off(config, case)
             axes.plot(tip[:, first], tip[:, second], label=label, **style.LINES[line])
             axes.plot(tip[0, first], tip[0, second], "o", ms=3, color=style.LINES[line]["color"])
             axes.plot(tip[-1, first], tip[-1, second], "x", ms=5, color=style.REFERENCE)
@@ -75,7 +80,7 @@ def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
         axes.axhline(config.cases[case].desired_force, **style.LINES["reference"])
         style.event(axes, 0.0, "contact")
         axes.set(xlabel="Time since contact [s]", ylabel="Force [N]", ylim=(-2, 11.5))
-        style.panel(axes, letter, f"{config.cases[case].discrepancy:g} m off")
+        style.panel(axes, letter, _off(config, case))
     grid[1, 1].legend(ncols=3, loc="center right")
     ends = np.ptp([run["follower.tip"][-1] for run in recordings.values()], axis=0)
     spread = 1e3 * np.linalg.norm(ends)

@@ -15,6 +15,7 @@ CLAIMS = (
             less(f"{STABILITY}.lyapunov.largest_rise", 1e-12),
             within(f"{STABILITY}.lyapunov.decrement_ratio", 0.99, 1.01),
         ),
+        no_control="An identity of (2.16); beyond the step limit of an explicit step the runs of E2.02 diverge.",
         where="2.3.2",
         note="For constant parameters and a bounded regressor; an explicit step adds the limit dt sum(g_j Y_j^2) < 2 "
         "(E2.02).",

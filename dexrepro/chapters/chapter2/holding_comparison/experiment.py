@@ -35,8 +35,20 @@ def measure(recording: Recording, config: Config) -> Metrics:
 
 
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
-    """What the regulation gains in groups 2 and 3, off minus on [N], mean over the laws both groups have."""
+    """What the regulation gains in groups 2 and 3, off minus on [N], mean over the laws both groups have.
+
+    lead_1, lead_2: by how much the passive impedance errs more than the proposed law on either trajectory [N];
+    integral_lead_1, integral_lead_2: the same of an integral force law in the proposed law's place.
+    """
     result: Metrics = {}
+    for law, cases in {
+        "lead": ("s8", "s14"),
+        "integral_lead": ("tuned_force_integral_1", "tuned_force_integral_2"),
+    }.items():
+        for trajectory, (case, rival) in enumerate(zip(cases, ("s4", "s10")), start=1):
+            own, other = (metrics.get(name, {}).get("rmse") for name in (case, rival))
+            if own is not None and other is not None:
+                result[f"{law}_{trajectory}"] = other - own
     for group, pairs in {
         "group2": (("s11", "s12"), ("s13", "s14")),
         "group3": (("s15", "s16"), ("s17", "s18")),

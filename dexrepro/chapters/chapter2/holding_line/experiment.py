@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from dexrepro.arrays import Rng
@@ -47,8 +45,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
 
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     gains: Metrics = {}
-    for case in ("case1", "case2"):
+    for case in ("case1", "case2", "aligned"):
         rmse = [metrics.get(f"{case}_{switch}", {}).get("rmse") for switch in ("without", "with")]
-        off, on = (math.nan if value is None else value for value in rmse)
-        gains[f"{case}_gain"] = off - on
+        off, on = rmse
+        if off is not None and on is not None:
+            gains[f"{case}_gain"] = off - on
     return gains

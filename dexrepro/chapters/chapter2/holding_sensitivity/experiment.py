@@ -14,7 +14,7 @@ from dexrepro.chapters.chapter2.holding_comparison import experiment as holding_
 from dexrepro.chapters.chapter2.holding_comparison.claims import CLAIMS
 from dexrepro.experiment import Config, Metrics, Recording
 
-JUDGED = ("C2.12", "C2.13", "C2.14", "C2.15", "C2.17", "C2.18", "C2.19", "C2.31")
+JUDGED = ("C2.12", "C2.13", "C2.14", "C2.15", "C2.17", "C2.18", "C2.19")
 STARTS = (0, 5, 10, 20)
 DIVERGED = 1e3  # N, stands for the error of a run that diverged
 ESTIMATING = ("no_impedance", "impedance")

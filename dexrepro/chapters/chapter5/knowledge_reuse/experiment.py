@@ -20,7 +20,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
         target = pen.reference(pen.on_paper(path), config.arm.step)
         added = config.network.nodes if index == 0 else config.network.added
         centres = np.concatenate([centres, pen.node_centres(config, target, added, generator)])
-        learner = pen.network(config, centres)
+        learner = pen.network(config, centres, target)
         learner.reset(weights if config.network.keep else None)
         recording = pen.track(config, target, build(config.law, model=nominal, network=learner), nominal)
         if config.network.keep:

@@ -17,11 +17,12 @@ METHODS = {"dmp": "DMP", "dmp_plus": "DMP+", "idmp": "IDMP"}
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
-    hand, generator, rows, runs = rng("demonstration"), rng("kernels"), [], []
+    hand, generator, rivals, rows, runs = rng("demonstration"), rng("kernels"), rng("rivals"), [], []
     written = letters.demonstrations(config.hand.letter, config.demonstrations, config.kernels.draws, config, hand)
     for count in config.kernels.counts:
         for draw, demonstration in enumerate(written):
-            for method, primitive in _learn(count, letters.taught(demonstration, config), config, generator).items():
+            taught = letters.taught(demonstration, config)
+            for method, primitive in _learn(count, taught, config, generator, rivals).items():
                 errors, path = _errors(primitive, demonstration, config)
                 rows.append((count, draw, method, *errors))
                 runs.append((demonstration.position, path))
@@ -32,8 +33,14 @@ def simulate(config: Config, rng: Rng) -> Recording:
     )
 
 
-def _learn(count: int, taught: Demonstration, config: Config, rng: np.random.Generator) -> dict[str, DMP]:
-    """Every method on one draw of kernels; the baselines of equal size draw more kernels from the same law."""
+def _learn(
+    count: int, taught: Demonstration, config: Config, rng: np.random.Generator, rivals: np.random.Generator
+) -> dict[str, DMP]:
+    """Every method on one draw of kernels; the baselines of equal size draw more kernels from the same law.
+
+    dmp_equal and dmp_plus_equal have as many free parameters as the largest IDMP, dmp_double as many as the DMP+, and
+    dmp_fixed as many as the largest IDMP on the fewest kernels, whatever the number of initial ones.
+    """
     largest, training = max(config.features.counts), config.training
     kernels = letters.kernels(count, config, rng)
     features = letters.features(kernels, largest, config, rng)
@@ -45,6 +52,9 @@ def _learn(count: int, taught: Demonstration, config: Config, rng: np.random.Gen
         learned["dmp_local"] = _fit(kernels, taught, config, "lwr")
         learned["dmp_equal"] = _fit(same, taught, config)
         learned["dmp_plus_equal"] = _fit(_truncated(half, config), taught, config)
+        learned["dmp_double"] = _fit(letters.kernels(2 * count, config, rivals), taught, config)
+        fewest = 2 * min(config.kernels.counts) + largest
+        learned["dmp_fixed"] = _fit(letters.kernels(fewest, config, rivals), taught, config)
     options = {"update": training.solution, **{key: training[key] for key in ("rest", "rcond", "ridge")}}
     for m in config.features.counts:
         learned[f"idmp{m}"] = extend(base, features.first(m), taught, **options)
@@ -98,30 +108,38 @@ def _typical_paths(draws: pd.DataFrame, runs: list[Any], config: Config) -> pd.D
 def measure(recording: Recording, config: Config) -> Metrics:
     draws, metrics = recording.frames["draws"], Metrics()
     by_count = {}
+    best = f"idmp{max(config.features.counts)}"
     for count in config.kernels.counts:
         part = draws[draws.kernels == count]
         errors = by_count[count] = part.pivot(index="draw", columns="method", values="mse")
-        best = f"idmp{max(config.features.counts)}"
         for method in errors:
             metrics[f"n{count}.{method}.mse"] = float(errors[method].median())
             metrics[f"n{count}.{method}.mse_q90"] = float(errors[method].quantile(0.9))
-            if method.startswith("idmp"):
+            if method.startswith("idmp") or method == "dmp_equal":
                 metrics[f"n{count}.{method}.beats_dmp_plus"] = _share(errors[method] < errors.dmp_plus)
+                metrics[f"n{count}.{method}.ratio"] = float((errors[method] / errors.dmp_plus).median())
+            if method.startswith("idmp"):
+                ordered = (errors[method] < errors.dmp_plus) & (errors.dmp_plus < errors.dmp)
+                metrics[f"n{count}.{method}.ordered"] = _share(ordered)
         for method in ("dmp", "dmp_plus", best):
             chosen = part[part.method == method]
             metrics[f"n{count}.{method}.after"] = float(chosen.after.median())
             metrics[f"n{count}.{method}.limit"] = max(float(chosen.limit.max()), 1e-9)  # below is rounding
         metrics[f"n{count}.dmp_plus.beats_dmp"] = _share(errors.dmp_plus < errors.dmp)
-        metrics[f"n{count}.ordered"] = _share((errors[best] < errors.dmp_plus) & (errors.dmp_plus < errors.dmp))
+        metrics[f"n{count}.ordered"] = metrics[f"n{count}.{best}.ordered"]
         metrics[f"n{count}.dmp_plus.ratio"] = float((errors.dmp_plus / errors.dmp).median())
-        ratios = errors[best] / errors.dmp_plus
-        metrics[f"n{count}.{best}.ratio"] = float(ratios.median())
         if config.equal_size:
+            metrics[f"n{count}.dmp_double.ratio"] = float((errors.dmp_double / errors.dmp).median())
             metrics[f"n{count}.{best}.beats_dmp_equal"] = _share(errors[best] < errors.dmp_equal)
             metrics[f"n{count}.{best}.beats_dmp_plus_equal"] = _share(errors[best] < errors.dmp_plus_equal)
-    few, many = (by_count[count] for count in config.kernels.counts)
+            ordered = (errors[best] < errors.dmp_plus_equal) & (errors.dmp_plus_equal < errors.dmp_equal)
+            metrics[f"n{count}.ordered_equal"] = _share(ordered)
+    few, many = by_count[min(by_count)], by_count[max(by_count)]
     for method in few:
-        metrics[f"{method}.improves"] = _share(many[method] < few[method])
+        if len(by_count) > 1:
+            metrics[f"{method}.improves"] = _share(many[method] < few[method])
+        # The same comparison of every draw with the next one of as many kernels: what chance gives.
+        metrics[f"{method}.improves_by_chance"] = _share(np.roll(few[method], 1) < few[method])
     return metrics
 
 
@@ -134,7 +152,7 @@ def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     default, result = metrics.get("default", {}), {}
     for count in config.kernels.counts:
         medians = [default.get(f"n{count}.idmp{m}.mse") for m in config.features.counts]
-        if all(value is not None for value in medians):
+        if len(medians) > 1 and all(value is not None for value in medians):
             steps = [after / before for before, after in pairwise(medians)]  # type: ignore[operator]
             result[f"largest_step_n{count}"] = max(steps)
     return result

@@ -13,6 +13,8 @@ from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.crossing import clearance
 from dexrepro.measures import rms_distance
 
+GOALS = ["draw", "blocks", "goal", "x", "y", "clearance", "end_error", "unchanged"]
+
 
 def simulate(config: Config, rng: Rng) -> Recording:
     hand, generator = rng("demonstration"), rng("features")
@@ -20,12 +22,8 @@ def simulate(config: Config, rng: Rng) -> Recording:
     for draw in range(config.features.draws):
         shown = {blocks: crossing.repetitions(blocks, config, hand) for blocks in crossing.HEIGHTS}
         averages = {blocks: crossing.averaged(paths, config) for blocks, paths in shown.items()}
-        if (
-            config.demonstrations
-            and config.dmp.amplitude == "printed"
-            and (averages[1].start == averages[1].goal).any()
-        ):
-            return Recording(status="not defined: the printed amplitude is zero where start and goal agree on an axis")
+        if reason := crossing.undefined(averages, config):
+            return Recording(status=reason)
         taught = {blocks: letters.taught(average, config) for blocks, average in averages.items()}
         skills = crossing.learn(taught, config, generator)
         rows += _quality(draw, skills, config)
@@ -36,7 +34,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
         frames={
             "quality": pd.DataFrame(rows, columns=["draw", "skill", "blocks", "clearance", "rms"]),
             "changes": pd.DataFrame(changes, columns=["draw", "blocks", "m", "change"]),
-            "goals": pd.DataFrame(reached, columns=["draw", "blocks", "goal", "x", "y", "clearance", "end_error"]),
+            "goals": pd.DataFrame(reached, columns=GOALS),
             "paths": pd.concat(kept or [], ignore_index=True),
         },
         steps=config.dmp.samples * (len(rows) + len(changes) + len(reached)),
@@ -68,8 +66,10 @@ def _generalisations(draw: int, skills: crossing.Skills, config: Config) -> list
     for blocks in crossing.HEIGHTS[1:]:
         paths = letters.rollout(skills.skills[blocks], config, goal=targets)
         distances, ends = clearance(paths, blocks).min(axis=1), np.linalg.norm(paths[:, -1] - targets, axis=1)
-        for k, (goal, distance, end) in enumerate(zip(targets, distances, ends)):
-            result.append((draw, blocks, k, goal[0], goal[1], distance, end))
+        # Without a change of g every path ends where the demonstration does.
+        missed = np.linalg.norm(letters.rollout(skills.skills[blocks], config)[-1] - targets, axis=1)
+        for k, (goal, *found) in enumerate(zip(targets, distances, ends, missed)):
+            result.append((draw, blocks, k, goal[0], goal[1], *found))
     return result
 
 
@@ -93,7 +93,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
         return {}
     quality, reached = recording.frames["quality"], recording.frames["goals"]
     clear = quality.groupby(["skill", "blocks"]).clearance.median()
-    metrics: Metrics = {f"skill1.over{b}": float(clear[1, b]) for b in crossing.HEIGHTS}
+    metrics: Metrics = {f"skill{s}.over{b}": float(clear[s, b]) for s in (1, 3) for b in crossing.HEIGHTS}
+    metrics["skill1.rms"] = float(quality[(quality.skill == 1) & (quality.blocks == 1)].rms.median())
     changes = recording.frames["changes"].pivot(index=["draw", "blocks"], columns="m", values="change")
     for blocks in crossing.HEIGHTS[1:]:
         own = quality[(quality.skill == blocks) & (quality.blocks == blocks)]
@@ -102,8 +103,11 @@ def measure(recording: Recording, config: Config) -> Metrics:
         steps = changes.xs(blocks, level="blocks").to_numpy()
         metrics[f"skill{blocks}.last_change"] = float((steps[:, -1] / steps[:, 0]).max())
         metrics[f"skill{blocks}.shrinks_always"] = float(np.mean(np.diff(steps, axis=1).max(axis=1) <= 0))
+        medians = np.median(steps, axis=0)
+        metrics[f"skill{blocks}.largest_step"] = float((medians[1:] / medians[:-1]).max())
         part = reached[reached.blocks == blocks]
         metrics[f"goals{blocks}.clearance"] = float(part.clearance.min())
         metrics[f"goals{blocks}.free"] = float(np.mean(part.clearance > 0))
         metrics[f"goals{blocks}.end_error"] = float(part.end_error.max())
+        metrics[f"goals{blocks}.missed"] = float(part.unchanged.max())
     return metrics

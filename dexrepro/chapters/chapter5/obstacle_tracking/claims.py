@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, every, greater, less
+from dexrepro.claims import Claim, Predicate, every, greater, less
+
+
+def follows(*cases: str) -> Predicate:
+    return every(
+        *(less(f"obstacle_tracking.{case}.bound_use", 1.0) for case in cases),
+        *(greater(f"obstacle_tracking.{case}.clearance", 0.0) for case in cases),
+    )
+
 
 CLAIMS = (
     Claim(
         "C5.26",
         "5.9",
-        "The arm follows the generalised skills with limited errors and without conflict with the obstacle.",
+        "Under the adaptive controller the arm follows the generalised skills with limited errors and without conflict "
+        "with the obstacle.",
         every(
             less("obstacle_tracking.largest_bound_use", 1.0),
             greater("obstacle_tracking.least_clearance", 0.0),
         ),
-        printed=less("obstacle_tracking.printed.bound_use", 1.0),
+        control=follows("pd_two", "pd_three"),
+        printed=follows("printed"),
+        credits="the adaptive neural law and its barrier",
         where="5.5.3",
+        note="The control is PD control with gravity compensation as tuned for the letters, to the farthest goal: it "
+        "uses {obstacle_tracking.pd_three.bound_use:.0%} of the bound, the law "
+        "{obstacle_tracking.three_8.bound_use:.0%}, which is the initial error; the pen errs by "
+        "{obstacle_tracking.pd_three.tip_rms:.2f} against {obstacle_tracking.three_8.tip_rms:.2f} mm.",
     ),
 )

@@ -26,7 +26,8 @@ def simulate(config: Config, rng: Rng) -> Recording:
     path = skill.rollout(config.arm.step, horizon=duration, time_constant=duration, goal=goal).position
     target = pen.reference(pen.over_table(path), config.arm.step)
     nominal = pen.model(config)
-    learner = pen.network(config, pen.node_centres(config, target, config.network.nodes, rng("nodes")))
+    centres = pen.node_centres(config, target, config.network.nodes, rng("nodes"))
+    learner = pen.network(config, centres, target)
     recording = pen.track(config, target, build(config.law, model=nominal, network=learner), nominal)
     if config.picture:
         recording.images.update(_film(recording, config))

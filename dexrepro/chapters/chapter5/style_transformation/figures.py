@@ -19,7 +19,7 @@ FIGURES = {
         "random features are added, five at a time, along the diagonals; black frames: demonstrations. Only the "
         "weights of the new features are learned. Right: distance to the target and to the initial letter over the "
         "number of added features, median of the draws. The book shows the left part.",
-        "The shapes leave the letter a gradually and are clearly distinct letters after 30 added features.",
+        "Shapes between the letter a and four others by added features, and their distances from both.",
     ),
     "5.B": Figure(
         "Mixing styles by their weights, Eq. (5.30): from one letter (alpha = 1) to another (alpha = 0). The result is "
@@ -37,11 +37,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if "default" not in recordings:
         return {}
     recording = recordings["default"]
-    return {
-        "5.5a": demonstrations(recording, config),
-        "5.6": cross(recording, config),
-        "5.B": mixtures(recording, config),
-    }
+    drawn = {"5.5a": demonstrations(recording, config), "5.6": cross(recording, config)}
+    return drawn | ({"5.B": mixtures(recording, config)} if len(recording.frames["mixtures"]) else {})
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
@@ -61,6 +58,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
         {"variant": case, "letter": letter, **{text: values.get(f"{letter}.{key}") for key, text in columns.items()}}
         for case, values in metrics.items()
         for letter in config.hand.targets
+        if f"{letter}.final" in values
     )
     return tables
 
@@ -80,7 +78,7 @@ def demonstrations(recording: Recording, config: Config) -> Drawing:
         panel.plot([part.x.iloc[0], part.x.iloc[-1]], [part.y.iloc[0], part.y.iloc[-1]], "o", ms=3, color=style.RIVAL)
         panel.set(aspect="equal", xlabel="x [cm]", title=name)
     axes[0].set_ylabel("y [cm]")
-    style.title(figure, "The five demonstrated letters begin and end at the same points (dots)")
+    style.title(figure, f"The {len(names)} demonstrated letters begin and end at the same points (dots)")
     return figure
 
 
@@ -93,7 +91,9 @@ def cross(recording: Recording, config: Config) -> Drawing:
         old.remove()
     _cross(figure.add_subplot(sheet[:, 0]), recording, config)
     _distances(axes[:, 1], recording, config)
-    style.title(figure, "The letter a turns gradually into w, z, k and l as features are added")
+    names = config.hand.targets
+    text = f"{', '.join(names[:-1])} and {names[-1]}" if names[1:] else names[0]
+    style.title(figure, f"From {config.hand.base} to {text} as features are added")
     return figure
 
 

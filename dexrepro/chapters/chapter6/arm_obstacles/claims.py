@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, every, greater, less
+from dexrepro.claims import Claim, Predicate, every, greater, less
 
 ARM = "arm_obstacles"
+
+
+def passes(case: str) -> Predicate:
+    return every(*(greater(f"{ARM}.{case}.distance_{box}", 0.0) for box in ("first", "second", "new")))
+
 
 CLAIMS = (
     Claim(
@@ -19,7 +24,9 @@ CLAIMS = (
         "C6.17",
         "6.5",
         "The arm on the constrained path passes all boxes.",
-        every(*(greater(f"{ARM}.constrained.distance_{box}", 0.0) for box in ("first", "second", "new"))),
+        passes("constrained"),
+        control=passes("original"),
+        credits="the constraints",
         where="6.4.1",
         note="Fragile: inflating the box by the tool's tip instead of the wrist, or passing between box and torso, "
         "makes the arm touch (Table T6.Sc).",

@@ -24,7 +24,10 @@ RATE = 200.0
 
 def simulate(config: Config, rng: Rng) -> Recording:
     constraint = constraint_of(config)
-    frames = {"states": _random_states(constraint, config, rng("states"))}
+    frames = {
+        "states": _random_states(constraint, config, rng("states")),
+        "edge": _edge_states(constraint, config, rng("edge")),
+    }
     z1, z2 = np.array(config.start, float) + config.perturbation, np.zeros(len(config.start))
     z2[0] = config.start_rate
     if config.printed:
@@ -48,17 +51,36 @@ def constraint_of(config: Config) -> Constraint:
 
 
 def _random_states(constraint: Constraint, config: Config, rng: np.random.Generator) -> pd.DataFrame:
-    """Allowed errors, velocity errors and dV^c/dt by differences, for both couplings g1."""
+    """Allowed errors and velocity errors, with dV^c/dt by differences."""
     dimensions = 1 if config.lower is not None else 2
     z1 = rng.uniform(-1, 1, (40 * config.states, dimensions)) * (80.0 if config.inside else 300.0)
     z1 = z1[constraint.satisfied(z1)][: config.states]
     z2 = rng.normal(0, 100, z1.shape)
     z2[::4] *= 1e-3  # velocity errors near zero, where the barrier's pull decides
+    return _rates(z1, z2, constraint, config, 1e-7)
+
+
+def _edge_states(constraint: Constraint, config: Config, rng: np.random.Generator) -> pd.DataFrame:
+    """The same for errors within a ten-thousandth of the bound that approach it."""
+    dimensions = 1 if config.lower is not None else 2
+    way = rng.normal(size=(config.states, dimensions))
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    gap = 10 ** rng.uniform(-6, -4, (config.states, 1))
+    bound = np.where(way > 0, config.upper, -config.lower) if config.lower is not None else float(config.upper)
+    z1 = way * bound * ((1 - gap) if config.inside else 1 / (1 - gap)) ** 0.5
+    z2 = z1 * (rng.uniform(1, 8, gap.shape) if config.inside else -rng.uniform(0.05, 1, gap.shape))
+    return _rates(z1, z2, constraint, config, 1e-9)
+
+
+def _rates(z1: Any, z2: Any, constraint: Constraint, config: Config, step: float) -> pd.DataFrame:
+    """dV^c/dt by differences over ``step`` [s] at states, for both couplings g1: with k_n, and with k_2 alone in it."""
     frame = {f"z1_{i}": column for i, column in enumerate(z1.T)}
     for coupling in config.couplings:
         pull = printed_case_two_pull(z1, config.lower, config.upper) if config.printed else None
         rates = closed_loop_rates(z1, z2, constraint, _gains(config), coupling, pull)
-        frame[f"rate_{coupling:.2g}"] = lyapunov_rate(z1, z2, *rates, constraint)
+        frame[f"rate_{coupling:.2g}"] = lyapunov_rate(z1, z2, *rates, constraint, step)
+        unshared = -_gains(config).decay * z2
+        frame[f"plain_{coupling:.2g}"] = lyapunov_rate(z1, z2, rates[0], unshared, constraint, step)
         frame[f"squares_{coupling:.2g}"] = _squares(z1, z2, constraint, _gains(config), coupling)
     return pd.DataFrame(frame)
 
@@ -86,11 +108,14 @@ def _printed_flow(z1: Any, z2: Any, constraint: Constraint, config: Config) -> t
 def measure(recording: Recording, config: Config) -> Metrics:
     states, held = recording.frames["states"], constraint_of(config).satisfied(recording["error"])
     value = recording["lyapunov"]
-    rates = states.filter(like="rate_").to_numpy()
-    scale = 1 + np.abs(states.filter(like="squares_").to_numpy())
+    rates, scale = _scaled(states, "rate_")
+    near, near_scale = _scaled(recording.frames["edge"], "rate_")
+    plain, _ = _scaled(recording.frames["edge"], "plain_")
     metrics: Metrics = {
         "worst_rate": float((rates / scale).max()),
         "rising_states": int((rates > 1e-6 * scale).sum()),
+        "rising_near_bound": int((near > 1e-6 * near_scale).sum()),
+        "rising_without_share": int((plain > 1e-6 * near_scale).sum()),
         "v_rises": int((np.diff(value) > 1e-12 * value[:-1]).sum()) if held.all() else None,
         "end_error": float(np.linalg.norm(recording["error"][-1])),
         "hit_time": None if held.all() else float(recording.time[held.argmin()]),
@@ -106,6 +131,11 @@ def measure(recording: Recording, config: Config) -> Metrics:
             np.isnan(case_two_value(np.array(config.probes), *config.same_sign)).mean()
         )
     return metrics
+
+
+def _scaled(states: pd.DataFrame, name: str) -> tuple[Any, Any]:
+    """Rates of a name at states, and what they are compared with."""
+    return states.filter(like=name).to_numpy(), 1 + np.abs(states.filter(like="squares_").to_numpy())
 
 
 def _shrinking(config: Config, with_rate: bool) -> float:

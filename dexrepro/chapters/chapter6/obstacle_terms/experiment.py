@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pandas as pd
@@ -13,7 +13,7 @@ from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning, plane
 from dexrepro.control.motion import minimum_jerk
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
-from dexrepro.primitives.constrained import LAWS, Reference, Skill, rollout
+from dexrepro.primitives.constrained import Law, Reference, Skill, rollout
 from dexrepro.primitives.coupling import Term, coupled_rollout, dynamic_potential, steering
 from dexrepro.primitives.obstacles import Polygon, clearance
 
@@ -29,13 +29,14 @@ def simulate(config: Config, rng: Rng) -> Recording:
         frames = _constrained(config, lesson, movement, rng("reference_noise"))
     else:
         frames = _steered(config, lesson, movement, block)
-        frames["bars"], frames["points"] = _bars(config), _points(config)
+        frames["bars"], frames["points"] = _bars(config, config.bars.half_widths), _points(config)
+        frames["tuned_bars"] = _tuned_bars(config)
     path = frames["path"].to_numpy()
     numbers = {
         "clearance": clearance(path, [block]),
         "clearance_all": clearance(path, [block, *old]),
         "goal_error": float(np.linalg.norm(path[-1] - lesson.second.goal)),
-        "operations": _operations(config, block),
+        **_operations(config, block),
     }
     frames["numbers"] = pd.DataFrame([numbers])
     return Recording(frames=frames, steps=config.steps)
@@ -132,9 +133,9 @@ def _points(config: Config) -> pd.DataFrame:
     return pd.DataFrame({"offset": offsets, "distance": np.linalg.norm(paths - points, axis=-1).min(axis=0)})
 
 
-def _bars(config: Config) -> pd.DataFrame:
-    """Clearance to bars across a straight reach, for half-widths and offsets of the bar's centre."""
-    rows = [(w, o * w if o > 0.1 else o) for w in config.bars.half_widths for o in config.bars.offsets]
+def _bars(config: Config, widths: list[float], strength: float | None = None, decay: float | None = None) -> Any:
+    """Clearance to bars across a straight reach and whether it passes them to its goal, for half-widths and offsets."""
+    rows = [(w, o * w if o > 0.1 else o) for w in widths for o in config.bars.offsets]
     width, offset = np.array(rows, float).T
     thick = config.bars.thickness / 2
     corners = np.array([[-thick, -1], [thick, -1], [thick, 1], [-thick, 1]])
@@ -142,47 +143,97 @@ def _bars(config: Config) -> pd.DataFrame:
     vertices[..., 1] += offset[:, None]
     bars = Polygon(vertices)
     skill, start, step = _straight(config, len(rows))
-    strength, decay = np.full((len(rows), 1), config.strength), np.full((len(rows), 1), config.decay)
-    paths = coupled_rollout(skill, _term(config.method, bars, strength, decay), step, start, start)
-    return pd.DataFrame({"half_width": width, "offset": offset, "clearance": bars.distance(paths).min(axis=0)})
+    gains = [np.full((len(rows), 1), g) for g in (strength or config.strength, decay or config.decay)]
+    with np.errstate(all="ignore"):  # some settings diverge
+        paths = coupled_rollout(skill, _term(config.method, bars, *gains), step, start, start)
+        missed = np.linalg.norm(paths[-1] - skill.goal, axis=-1)
+        clear = bars.distance(paths).min(axis=0)
+    passed = (clear > 0) & (missed < config.arrived)
+    return pd.DataFrame({"half_width": width, "offset": offset, "clearance": clear, "passed": passed})
+
+
+def _tuned_bars(config: Config) -> pd.DataFrame:
+    """Wide bars passed, for every setting of the grid."""
+    rows = []
+    for strength in config.grid.strength:
+        for decay in config.grid.decay:
+            bars = _bars(config, config.bars.wide, strength, decay)
+            passed = bars.groupby("half_width").passed.sum()
+            rows += [(strength, decay, width, count) for width, count in passed.items()]
+    return pd.DataFrame(rows, columns=["strength", "decay", "half_width", "passed"])
 
 
 class _Counted(np.ndarray):
-    """Array that counts the elements that arithmetic on it produces."""
+    """Array that counts the elements that arithmetic on it produces, choices among elements included."""
 
     operations = 0
+    WORK: ClassVar[dict[Any, int]] = {np.linalg.norm: 2, np.where: 1, np.take_along_axis: 1}  # an element of the input
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         plain = [np.asarray(value) if isinstance(value, _Counted) else value for value in inputs]
         if "out" in options:
             options["out"] = tuple(np.asarray(value) for value in options["out"])
         result = getattr(ufunc, method)(*plain, **options)
-        work = max([np.size(value) for value in (*plain, result)])
-        _Counted.operations += work
+        _Counted.operations += max([np.size(value) for value in (*plain, result)])
         return result.view(_Counted) if isinstance(result, np.ndarray) else result
 
+    def __array_function__(self, function: Any, types: Any, args: Any, options: Any) -> Any:
+        result = super().__array_function__(function, types, args, options)
+        if function in self.WORK:
+            _Counted.operations += self.WORK[function] * max(np.size(value) for value in (*args, result))
+            result = np.asarray(result).view(_Counted)
+        return result
 
-def _operations(config: Config, block: Polygon) -> int:
-    """Elementary operations of one step in the plane, counted on the running code."""
+    def argmin(self, *args: Any, **options: Any) -> Any:
+        _Counted.operations += self.size
+        return np.asarray(self).argmin(*args, **options)
+
+
+SPLINE = 24
+"""Operations of a cubic spline with two derivatives in the plane, by Horner's rule: the reference at an instant."""
+
+
+def _operations(config: Config, block: Polygon) -> dict[str, int]:
+    """Elementary operations of one step in the plane, counted on the running code.
+
+    The constrained primitive needs its reference and, where its law does, a step of the unconstrained primitive too.
+    ``operations_primitive``: of that step; ``operations_point``: of the potential about a single point.
+    """
     x, v = np.array([9.0, 12.0]).view(_Counted), np.array([-2.0, 1.0]).view(_Counted)
     skill = Skill(np.zeros((2, 2)), np.array([5.0, 14.0]), 5.0, nominal=np.zeros((2, 2)))
-    _Counted.operations = 0
-    if config.method in ("constrained", "filter", "none"):
-        target = np.array([9.1, 12.1])
-        reference = Reference(np.stack([target, target]), np.zeros((2, 2)), np.zeros((2, 2)))
+    target = np.array([9.1, 12.1])
+    reference = Reference(np.stack([target, target]), np.zeros((2, 2)), np.zeros((2, 2)))
+
+    def constrained(law: Law) -> int:
+        _Counted.operations = 0
         rate = config.cdmp.projection_rate if config.cdmp.projection else None
-        law = LAWS["none"] if config.method == "none" else learning.law(config.cdmp)
         rollout(skill, reference, learning.tube(config.cdmp, 0.5), learning.gains(config.cdmp), law, 1e-3, x, v, rate)
-    else:
-        term = _term(config.method, block, np.array([config.strength]), np.array([config.decay]))
+        return _Counted.operations
+
+    def coupled(term: Term) -> int:
+        _Counted.operations = 0
         coupled_rollout(skill, term, 1e-3, x, v)
         return _Counted.operations // 4  # the method evaluates the term four times a step
-    return _Counted.operations
+
+    alone = coupled(lambda k, x, v: np.zeros(2))
+    if config.method in ("constrained", "filter"):
+        nominal = alone if config.cdmp.law == "feedforward" else 0
+        return {
+            "operations": constrained(learning.law(config.cdmp)) + SPLINE + nominal,
+            "operations_primitive": alone,
+        }
+    gains: tuple[Any, Any] = np.array([config.strength]), np.array([config.decay])
+    counts = {"operations": coupled(_term(config.method, block, *gains)), "operations_primitive": alone}
+    if config.method == "potential":
+        counts["operations_point"] = coupled(
+            lambda k, x, v: dynamic_potential(x, v, lambda probe: np.broadcast_to(target, probe.shape), *gains)
+        )
+    return counts
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
     metrics: Metrics = {str(name): float(value) for name, value in recording.frames["numbers"].iloc[0].items()}
-    metrics["operations"] = int(metrics["operations"] or 0)
+    metrics |= {name: int(value or 0) for name, value in metrics.items() if name.startswith("operations")}
     if "noise" in recording.frames:
         noise = recording.frames["noise"]
         excess = noise.true_distance - config.cdmp.margin - 3 * noise.sigma
@@ -196,7 +247,10 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "nearly_aligned_distance": float(points.distance.iloc[1:].min()),
     }
     for width in config.bars.half_widths:
-        metrics[f"bars_passed_{10 * width:.0f}mm"] = int((bars.clearance[bars.half_width == width] > 0).sum())
+        metrics[f"bars_passed_{10 * width:.0f}mm"] = int(bars.passed[bars.half_width == width].sum())
+    tuned = recording.frames["tuned_bars"]
+    for width in config.bars.wide:
+        metrics[f"bars_tuned_{10 * width:.0f}mm"] = int(tuned.passed[tuned.half_width == width].max())
     return metrics
 
 

@@ -10,6 +10,8 @@ import pandas as pd
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter6 import plane
 from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.humans.segmentation import pauses
+from dexrepro.humans.waypoints import Drawing
 from dexrepro.primitives.obstacles import Polygon, clearance
 from dexrepro.primitives.reference_path import lagrange
 
@@ -37,9 +39,16 @@ def _study(config: Config, lesson: plane.Lesson) -> tuple[dict[str, float], dict
     )
     reference, samples, (leave, resume) = plane.spline_reference(config, second)
     extended = plane.extended_paths(config, lesson, steps)
-    inside = [lies_inside(path, [*old, block]) for path in extended]
+    inside = np.concatenate([lies_inside(path, [*old, block]) for path in extended])
+    inside_old = np.concatenate([lies_inside(path, old) for path in extended])
+    found = [pauses(drawing.time, drawing.position) for drawing in lesson.drawings]
+    alone = [_second_alone(drawing) for drawing in lesson.drawings]
     row = {
         "segmentation_error": np.abs(lesson.segmentation_errors).max(),
+        "pauses_fewest": min(map(len, found)),
+        "pauses_most": max(map(len, found)),
+        "pause_error": max(abs(t - w.pauses[0]) for times, w in zip(found, lesson.drawings) for t in times or [np.inf]),
+        "pauses_in_one": max(map(len, alone)),
         "clearance_new": clearance(second.position, [block]),
         "clearance_old": min(clearance(first.position, old), clearance(second.position, old)),
         "clearance_first_new": clearance(first.position, [block]),
@@ -47,7 +56,9 @@ def _study(config: Config, lesson: plane.Lesson) -> tuple[dict[str, float], dict
         "kept_share": 1 - (resume - leave) / len(second.position),
         "clearance_extended_1": clearance(extended[0], [*old, block]),
         "clearance_extended_2": clearance(extended[1], [*old, block]),
-        "inside_share_extended": float(np.concatenate(inside).mean()),
+        **{f"clearance_extended_{i}_old": clearance(path, old) for i, path in enumerate(extended, 1)},
+        "inside_share_extended": float(inside.mean()),
+        "inside_share_extended_old": float(inside_old.mean()),
         "goal_error": float(np.linalg.norm(second.position[-1] - lesson.second.goal)),
         "late_drift": _late_drift(lesson),
         "lagrange_deviation": _lagrange_deviation(samples),
@@ -64,6 +75,12 @@ def _study(config: Config, lesson: plane.Lesson) -> tuple[dict[str, float], dict
     return row, {
         name: pd.DataFrame(line[:: max(1, len(line) // 400)], columns=["x", "y"]) for name, line in lines.items()
     }
+
+
+def _second_alone(drawing: Drawing) -> list[float]:
+    """Pauses found in the second stroke alone, which has none."""
+    later = drawing.time > drawing.pauses[0] + 0.3
+    return pauses(drawing.time[later], drawing.position[later])
 
 
 def lies_inside(path: Any, polygons: list[Polygon]) -> Any:
@@ -88,6 +105,4 @@ def measure(recording: Recording, config: Config) -> Metrics:
     groups = recording.frames["groups"]
     metrics: Metrics = {f"{name}_min": float(column.min()) for name, column in groups.items()}
     metrics |= {f"{name}_max": float(column.max()) for name, column in groups.items()}
-    # (6.1) without forcing has the poles of tau^2 p^2 + alpha_z tau p + alpha_z beta_z.
-    metrics["damping_ratio"] = config.dmp.alpha_z / (2 * np.sqrt(config.dmp.alpha_z * config.dmp.beta_z))
     return metrics

@@ -83,6 +83,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
     ratio = percentiles.filter(like="wrist").mean(axis=1) / percentiles.filter(like="shoulder").mean(axis=1)
     metrics |= {"spread_ratio_low": float(ratio.min()), "spread_ratio_high": float(ratio.max())}
     metrics["projections"] = int(recording.frames["projections"].steps.sum())
+    every = {kind: groups.filter(regex=f"^rmse_.*_{kind}$").pow(2).mean(axis=1) for kind in ("original", "constrained")}
+    metrics["rmse_ratio_all"] = float((every["constrained"] / every["original"]).pow(0.5).max(skipna=False))
     for name in ("shoulder", "elbow", "wrist"):
         for side in SIDES:
             before, after = (groups[f"rmse_{name}_{side}_{kind}"] for kind in ("original", "constrained"))

@@ -23,26 +23,27 @@ FIGURES = {
         "Distance of the synthetic person's joints to the median of ten demonstrations (band from smallest to "
         "largest; left green, right blue) and the 95th percentiles. The book shows the bands; our noise levels set "
         "the ratio.",
-        "The wrists spread about twice as far as the shoulders.",
+        "Bands of distances to the median for wrists, elbows and shoulders, and their percentiles.",
     ),
     "6.8": Figure(
         "Stages of the calculation as the code runs them; same order as in the book.",
         "Block diagram: loop 1 restores lengths outwards, then the hands, then loop 2 restores lengths inwards.",
     ),
     "6.9": Figure(
-        "Paths of the synthetic person's six joints: constrained primitives (solid), original primitives (dotted) and "
-        "stick figures at six instants. The book shows the same in three dimensions.",
-        "The constrained arm paths differ from the original ones most at elbows and wrists.",
+        "Both arms of the synthetic person from the front at six instants, under the constrained primitives (solid) "
+        "and the original ones (dotted); thin: the whole paths of the six joints. The book shows the same in three "
+        "dimensions.",
+        "Arms at six instants under constrained and original primitives, with the paths of their joints.",
     ),
     "6.10": Figure(
         "Synthetic person: link lengths of the original and of the constrained primitives; shaded: the printed 22 and "
         "28 cm with +-1 cm. The book prints ranges of [12, 52] and [25, 39] cm for the original left arm.",
-        "The constrained links keep their lengths within the margin, the original ones do not.",
+        "Link lengths over time of both arms, constrained and original, with their margins.",
     ),
     "6.11": Figure(
         "Synthetic person: distance of the hands; shaded: 33 +- 1 cm. The book prints [34, 57] cm for the original "
         "and [24, 25] cm for the constrained primitives, which is outside of its own band.",
-        "The constrained hand distance stays near the box's length.",
+        "Hand distance over time, constrained and original, with its margin.",
     ),
 }
 TABLES = {
@@ -151,7 +152,7 @@ def _draw_spread(run: Recording, numbers: Metrics) -> Drawing:
     grid[3].set_ylabel("95th percentile [cm]")
     style.panel(grid[3], "d", "three groups")
     ratio = f"{numbers['spread_ratio_low']:.1f} to {numbers['spread_ratio_high']:.1f}"
-    style.title(figure, f"The wrists spread {ratio} times as far as the shoulders")
+    style.title(figure, f"With the noise that we chose the wrists spread {ratio} times as far as the shoulders")
     return figure
 
 
@@ -177,26 +178,28 @@ def _draw_stages(run: Recording) -> Drawing:
 def _draw_paths(run: Recording, settings: Config) -> Drawing:
     from dexrepro.report import style
 
-    figure, panels = style.subplots(1, 2, height=2.8, sharey=True)
+    figure, panels = style.subplots(2, 3, height=3.6, sharex=True, sharey=True)
     joints, original = _joints(run, "joints"), _joints(run, "original")
-    for axes, view, label in zip(panels, ((0, 2), (1, 2)), ("x [cm]", "y [cm]")):
+    front = (0, 2)
+    for letter, axes, index in zip("abcdef", panels.flat, _instants(run, settings)):
         for side, colour in zip((0, 1), (style.BOOK, style.EXTRA[0])):
-            for joint in range(3):
-                axes.plot(*joints[:, side, joint][:, view].T, color=colour)
-                axes.plot(*original[:, side, joint][:, view].T, color=colour, linestyle=":", linewidth=0.8)
-        axes.set(xlabel=label, aspect="equal")
-    for letter, index in zip("abcdef", _instants(run, settings)):
-        _stick(panels[0], joints[index], "#999999", alpha=0.6)
-        spot = joints[index, 1, 2][[0, 2]]
-        panels[0].annotate(letter, spot, xytext=(3, 3), textcoords="offset points", fontsize=7)
-    panels[0].plot([], [], color="black", label="constrained")
-    panels[0].plot([], [], ":", color="black", label="original")
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    panels[0].set(ylabel="z [cm]", ylim=(-42, 8))
-    panels[1].set(ylabel="z [cm]")
-    panels[1].tick_params(labelleft=True)
-    style.panel(panels[0], "a", "from the front (left arm blue, right green)")
-    style.panel(panels[1], "b", "from the side")
+            for paths, dashes in ((joints, "-"), (original, ":")):
+                axes.plot(
+                    *paths[:, side][..., front].transpose(2, 0, 1), color=colour, alpha=0.35, linewidth=0.5, ls=dashes
+                )
+                arm = paths[index, side][:, front]
+                axes.plot(*arm.T, "o", color=colour, markersize=2.5, mfc=colour if dashes == "-" else "white", mew=0.7)
+                axes.plot(*arm.T, dashes, color=colour, linewidth=1.3)
+        axes.set(aspect="equal")
+        style.panel(axes, letter, f"{run.time[index]:.1f} s")
+    for axes in panels[1]:
+        axes.set_xlabel("x [cm]")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("z [cm]")
+    dark = {"color": "black"}
+    names = {"left": {"color": style.BOOK}, "right": {"color": style.EXTRA[0]}, "constrained": dark,
+             "original": {**dark, "linestyle": ":"}}  # fmt: skip
+    style.legend_below(figure, names)
     moved = np.linalg.norm(joints - original, axis=-1).max(axis=0)
     shoulder, elbow, wrist = moved.max(axis=0)
     text = f"elbows by up to {elbow:.0f} cm, wrists by {wrist:.0f} cm, shoulders by {shoulder:.0f} cm"
@@ -221,8 +224,9 @@ def _draw_lengths(run: Recording, numbers: Metrics, settings: Config) -> Drawing
     panels[0].set_ylabel("Link length [cm]")
     panels[1].legend(loc="upper right")
     kept, lost = numbers["length_error_constrained"], numbers["length_error_original"]
+    within = style.at_most(kept or 0.0, 2)
     style.title(
-        figure, f"Constrained links keep their length within {kept:.2f} cm, original ones miss it by {lost:.0f} cm"
+        figure, f"Constrained links keep their length within {within} cm, original ones miss it by up to {lost:.0f} cm"
     )
     return figure
 

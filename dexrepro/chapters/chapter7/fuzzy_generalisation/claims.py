@@ -8,8 +8,18 @@ PERSON = "the synthetic person reacts this way"
 FUZZY = "fuzzy_generalisation"
 
 
-def usable(case: str) -> Predicate:
-    return every(greater(f"{FUZZY}.{case}.lateral_steps", 0), greater(f"{FUZZY}.{case}.clearance_chosen", 0))
+def passes(*cases: str) -> Predicate:
+    return every(*(greater(f"{FUZZY}.{case}.clearance_three", 0) for case in cases))
+
+
+def usable(*cases: str) -> Predicate:
+    return every(
+        *(greater(f"{FUZZY}.{case}.{part}", 0) for case in cases for part in ("lateral_steps", "clearance_chosen"))
+    )
+
+
+ORDINARY = greater(f"{FUZZY}.main.ordinary_clearance", 0)
+AS_READ = "obstacle at the printed (10, 5), read in cm"
 
 
 CLAIMS = (
@@ -19,6 +29,7 @@ CLAIMS = (
         "The ordinary skill carries over to a new start and end (to 0.5 mm).",
         less(f"{FUZZY}.main.end_error", 0.05),
         printed=less(f"{FUZZY}.printed_kinematics.end_error", 0.05),
+        no_control="the attractor ends at its goal whatever is learned: only an equation that is wrong can miss it",
         where="7.4.2",
         note="The printed form is (7.33), T X' = V'; (7.3) and (7.12) print it without the dot.",
     ),
@@ -44,16 +55,23 @@ CLAIMS = (
         "C7.19",
         "7.9",
         "The generalised reactions in three directions pass the obstacle.",
-        greater(f"{FUZZY}.main.clearance_three", 0),
-        printed=greater(f"{FUZZY}.printed_sign.clearance_three", 0),
+        passes("main"),
+        control=ORDINARY,
+        printed=passes("printed_sign", "printed_kinematics"),
+        readings={"the fuzzy sets kept, as 7.4.2 says": passes("same_sets"), AS_READ: passes("as_read")},
         where="7.4.2",
-        note="Obstacle on the path, by our choice; a person who lifts 1 cm less would make right touch it (T7.S).",
+        note="Smallest clearance {fuzzy_generalisation.main.clearance_three:.2f} cm with the obstacle on the path, "
+        "our choice, and the sets rescaled, as 7.3.2 says; {fuzzy_generalisation.same_sets.clearance_three:.2f} cm "
+        "with the sets kept. Where the printed coordinates, read in cm, put it the ordinary path clears it already "
+        "(by {fuzzy_generalisation.as_read.ordinary_clearance:.2f} cm) and left turns into it. A person who lifts 1 "
+        "cm less would make right touch it (T7.S).",
     ),
     Claim(
         "C7.20",
         "7.9",
         "Fuzzy sets must change along with the task.",
-        greater(f"{FUZZY}.main.clearance_three", f"{FUZZY}.same_sets.clearance_three"),
+        every(passes("main"), greater(f"{FUZZY}.main.clearance_three", f"{FUZZY}.same_sets.clearance_three")),
+        control=passes("same_sets"),
         where="7.3.2",
         note="7.4.2 itself keeps the sets, because the board is the same; here this makes right touch the obstacle.",
     ),
@@ -62,7 +80,9 @@ CLAIMS = (
         "7.9",
         "Directions in between are generated, and the chosen left-forward one is usable.",
         usable("main"),
-        printed=usable("printed_sign"),
+        control=ORDINARY,
+        printed=usable("printed_sign", "printed_kinematics"),
+        readings={"the fuzzy sets kept, as 7.4.2 says": usable("same_sets"), AS_READ: usable("as_read")},
         where="7.4.2",
         note="Fragile: other widths of the direction sets make it touch the obstacle (T7.S).",
     ),

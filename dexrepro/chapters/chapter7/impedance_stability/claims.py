@@ -16,9 +16,13 @@ CLAIMS = (
             less(f"{STABILITY}.gain45.stable", 0.5),
             within(f"{STABILITY}.limit_ratio", 0.85, 1.15),
         ),
+        control=less(f"{STABILITY}.exact_model.stable", 0.5),
+        credits="modelling and measuring errors",
         printed=greater(f"{STABILITY}.displaced_printed.stable", 0.5),
         where="7.3.3",
-        note="Too large for the sampling period: the limit is where the sampled loop predicts it. As "
+        note="Too large for the sampling period, which no error of model or sensing is needed for: an exact model "
+        "without friction is unstable as well (torque travel {impedance_stability.exact_model.torque_travel:.0f} N m "
+        "a joint). The limit is where the sampled loop predicts it ({impedance_stability.limit_ratio:.2f} of it). As "
         "printed the law is unstable with a suitable k_s as well (E7.18).",
     ),
     Claim(
@@ -34,6 +38,7 @@ CLAIMS = (
         "7.B",
         "V decreases.",
         every(less(f"{STABILITY}.displaced.lyapunov_rise", 0), less(f"{STABILITY}.displaced.lyapunov_time", 100)),
+        control=less(f"{STABILITY}.displaced_no_estimation.lyapunov_rise", 0),
         printed=less(f"{STABILITY}.displaced_printed.lyapunov_rise", 0),
         where="(7.44)",
         note="At every step down to a ten-thousandth; below that it is a noise floor.",

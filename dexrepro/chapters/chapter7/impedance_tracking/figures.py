@@ -22,9 +22,9 @@ FIGURES = {
     "7.11": Figure(
         "(a-c) Joint torques under the corrected law with the printed k_s = 10 and, dashed, the gravity torque that "
         "the nominal model knows (it knows neither gripper, cube nor friction); the cube is picked up at 0.5 s and "
-        "put down at 6.5 s. (d) Planned and real path of the tip from above and its height; (e) error of the tip "
+        "put down at 6.5 s. (d, e) Planned and real path of the tip from above and its height; (f) error of the tip "
         "with and without time-delay estimation, same gains. Simulated; PyBullet, torque control at 1 kHz.",
-        "With time-delay estimation the tip follows the plan within micrometres although the model lacks the gripper.",
+        "Torques of three joints, planned and real path, and the error of the tip with and without estimation.",
     ),
 }
 TABLES = {"T7.C": "Tracking under the compared laws"}
@@ -70,7 +70,7 @@ def draw_tracking(recordings: Recordings, metrics: Mapping[str, Any], config: Co
         panel.plot(recording.time, recording["arm.torque"][:, k], **style.LINES["book"])
         for instant, word in ((case.pick, "pick"), (case.release, "release")):
             style.event(panel, instant, word)
-        panel.set(xlabel="Time [s]", ylabel="Torque [N m]" if k == 0 else "", xlim=(0, recording.time[-1] + 1.6))
+        panel.set(xlabel="Time [s]", ylabel="Torque [N m]" if k == 0 else "", xlim=(0, recording.time[-1]))
         panel.margins(y=0.15)
         style.panel(panel, letter, f"joint {k + 1}, {name}")
     plan, side, error = (figure.add_subplot(grid[1, 2 * k : 2 * k + 2]) for k in range(3))
@@ -92,7 +92,8 @@ def draw_tracking(recordings: Recordings, metrics: Mapping[str, Any], config: Co
             error.semilogy(recordings[name].time, np.maximum(distance, 1e-6), label=label, **style.LINES[line])
     error.set(xlabel="Time [s]", ylabel="Tip error [mm]", ylim=(1e-5, 10))
     error.legend(loc="center right", bbox_to_anchor=(1.0, 0.68))
-    style.panel(error, "e", "error of the tip")
+    style.panel(side, "e", "height")
+    style.panel(error, "f", "error of the tip")
     found = 1e3 * metrics["muscle"]["rms_error"]
     style.title(figure, f"The tip follows the plan to {found:.1f} µm although gripper and cube are unmodelled")
     return figure

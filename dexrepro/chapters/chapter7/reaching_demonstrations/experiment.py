@@ -116,8 +116,18 @@ def stiffness_metrics(recording: Recording, config: Config) -> Metrics:
     half = {key: float(recording.time[np.argmax(curve > (curve[0] + curve[-1]) / 2)]) for key, curve in bundles.items()}
     slope = {key: np.gradient(curve, recording.time).max() for key, curve in bundles.items()}
     return {
+        "direction_spread": direction_spread(recording, config),
         "final_ratio": float(min(final[d, "tall"] / final[d, "low"] for d in ("close", "far"))),
         "final_difference": float(max(abs(final["close", h] / final["far", h] - 1) for h in ("low", "tall"))),
         **{f"half_rise_{d}_{h}": half[d, h] for d, h in half},
         "slope_difference": float(max(abs(slope["close", h] / slope["far", h] - 1) for h in ("low", "tall"))),
     }
+
+
+def direction_spread(recording: Recording, config: Config) -> float:
+    """Largest relative range of the mean final stiffness over the directions, of all obstacles."""
+    final = traces_of(recording, config)[..., -1].mean(axis=1)
+    groups: dict[tuple[str, ...], list[float]] = {}
+    for condition, value in zip(skills.conditions(config), final):
+        groups.setdefault(condition.labels[:2], []).append(float(value))
+    return max(float(np.ptp(values) / np.mean(values)) for values in groups.values())

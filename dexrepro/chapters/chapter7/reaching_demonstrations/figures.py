@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
@@ -24,13 +25,13 @@ FIGURES = {
         "Four pictures of the arm passing over the stack.",
     ),
     "7.6": Figure(
-        "Simulated demonstrations on the board. (a) Plan view and height of ordinary reaches (grey) and of the "
-        "movement primitive learned from them (blue); red: learned with the printed sign of D v. (b) Muscle "
+        "Simulated demonstrations on the board. (a) Ordinary reaches (grey) and the "
+        "movement primitive learned from them (blue) from above, and their way along the straight line over time; red: "
+        "learned with the printed sign of D v, which delays it. (b) Muscle "
         "stiffness likewise. (c-f) Reactions to a low (2 cm) and a tall (8 cm) obstacle, far and close, in three "
         "directions; d': distance of forward and right at the obstacle in standard deviations. The book's figure "
         "shows recordings of one person with a joystick.",
-        "Ordinary reaches are reproduced to a fraction of a millimetre; forward and right reactions separate for a low "
-        "obstacle and overlap for a tall one.",
+        "Paths in three directions past four obstacles, from above and from the side, and the ordinary reaches.",
     ),
     "7.7": Figure(
         "Simulated muscle stiffness from EMG for the four obstacles, five repetitions in each of three directions, "
@@ -81,13 +82,13 @@ def draw_paths(recordings: Recordings, metrics: Mapping[str, Any], config: Confi
     style.panel(level, "b", "ordinary stiffness")
     ordinary = paths_of(recording, "ordinary", config)[0]
     pictures.plan(plans[0, 0], ordinary, color="#AAAAAA", linewidth=0.6, linestyle="--")
-    pictures.side(sides[0, 0], ordinary, task, color="#AAAAAA", linewidth=0.6, linestyle="--")
+    progress(sides[0, 0], recording.time, ordinary, task, color="#AAAAAA", linewidth=0.6, linestyle="--")
     for case, kind in (("corrected", "book"), ("printed_sign", "printed")):
         if case in recordings:
             pictures.plan(plans[0, 0], recordings[case]["learned"], **style.LINES[kind])
-            pictures.side(sides[0, 0], recordings[case]["learned"], task, **style.LINES[kind])
+            progress(sides[0, 0], recording.time, recordings[case]["learned"], task, **style.LINES[kind])
             level.plot(recording.time, recordings[case]["learned_stiffness"], **style.LINES[kind])
-    sides[0, 0].set_ylim(0, 2)
+    sides[0, 0].set(xlabel="Time [s]", ylabel="Along [cm]")
     style.panel(plans[0, 0], "a", f"ordinary, {10 * metrics['corrected']['ordinary_rmse']:.1f} mm off")
     places = {("far", "low"): (0, 2), ("far", "tall"): (1, 0), ("close", "low"): (1, 1), ("close", "tall"): (1, 2)}
     for condition, paths in zip(skills.conditions(config), paths_of(recording, "reactions", config)):
@@ -108,6 +109,12 @@ def draw_paths(recordings: Recordings, metrics: Mapping[str, Any], config: Confi
     style.legend_below(figure, looks)
     style.title(figure, "Forward and right are distinct for a low obstacle and overlap for a tall one (simulated)")
     return figure
+
+
+def progress(axes: Axes, time: np.ndarray, paths: np.ndarray, reach: skills.Reach, **line: Any) -> None:
+    """How far paths (N, 3) or (k, N, 3) [cm] are along the straight line from start to goal, over time."""
+    for path in np.reshape(paths, (-1, *np.shape(paths)[-2:])):
+        axes.plot(time, (path - reach.ends[0]) @ reach.axes[0], **line)
 
 
 def draw_stiffness(recording: Recording, config: Config) -> Drawing:

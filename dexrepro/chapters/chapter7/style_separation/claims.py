@@ -19,27 +19,19 @@ CLAIMS = (
     Claim(
         "C7.15",
         "7.A",
-        "One style parameter a style represents all reactions (scalar reading of (7.26)).",
+        "A common basis and a style parameter a style represent all reactions.",
         represented("per_coordinate", 1),
-        where="(7.26)",
-        note="Reactions at two places on the path are not multiples of one curve, whoever demonstrates them.",
-    ),
-    Claim(
-        "C7.15a",
-        "7.A",
-        "A common basis and style parameters from the singular values represent all reactions.",
-        represented("per_coordinate", 2),
-        printed=represented("printed_sign", 2),
-        by_construction="two moments of reaction make two components a coordinate; expect 3 to 4 for people",
+        control=represented("shared", 1),
+        readings={
+            "several style parameters, as the singular values ask for": represented("per_coordinate", 2),
+            "the reactions to one obstacle, as in Fig. 7.8": represented("one_obstacle", 1),
+        },
+        searched="one or several style parameters, a factor a coordinate or a common one, all obstacles or one",
         where="(7.26), (7.27)",
-        note="Vector reading of lambda_k.",
-    ),
-    Claim(
-        "C7.15b",
-        "7.A",
-        "For one obstacle a single style parameter of each coordinate is enough.",
-        represented("one_obstacle", 1),
-        source="ours",
-        by_construction="every direction reacts with the same hump",
+        note="lambda_k reads as a number or a row of style parameters. One a coordinate errs by "
+        "{style_separation.per_coordinate.mean1:.2g} cm (two {style_separation.per_coordinate.mean2:.2g}, one for a "
+        "single obstacle {style_separation.one_obstacle.mean1:.2g}; repetitions spread by "
+        "{style_separation.per_coordinate.spread:.2g} cm). That two are enough, and one for an obstacle, holds by "
+        "construction: two moments of reaction, and the same hump in every direction; expect 3 to 4 for people.",
     ),
 )

@@ -24,9 +24,9 @@ FIGURES = {
     ),
     "8.13": Figure(
         "Desired, virtual and actual path of the gripper in the simulated sponge experiment, with the learned law, "
-        "the regulator with the wrong model and the bound no method can beat (true model, run for 10 s); error to the "
-        "virtual reference. The book shows the same four panels.",
-        "Along z both laws stay on their virtual reference; the learned one compresses the sponge less at the end.",
+        "the regulator with the wrong model and one that is told the sponge (run for 10 s); (a, b) what the gripper is "
+        "off the path across it, and (d) its error to the virtual reference. The book shows the same, x and y apart.",
+        "Height, deviation across the path and error of the gripper against time.",
     ),
     "8.14": Figure(
         "Gain of the learned law and of the regulator over time on the simulated sponge, with the optimum (dashed). "
@@ -101,25 +101,31 @@ def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) 
 def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
-    figure, grid = style.subplots(2, 2, height=4.8)
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.0))
+    grid = figure.add_gridspec(2, 3)
+    depth, aside, error = (figure.add_subplot(place) for place in (grid[:, :2], grid[0, 2], grid[1, 2]))
     learned = recordings["learned"]
-    for axis, (axes, letter) in enumerate(zip(grid.flat, "xyz")):
-        middle, scale = (config.path.place[axis], 1e3) if axis < 2 else (0.0, 1.0)
-        for case, (label, line) in LINES.items():
-            run = recordings[case]
-            axes.plot(run.time, scale * (run["arm.tip"][:, axis] - middle), label=label, **style.LINES[line])
-        for channel, label, line in (
-            ("reference", "virtual $x_0$, proposed", "extra2"),
-            ("path", "desired $x_d$", "reference"),
-        ):
-            axes.plot(learned.time, scale * (learned[channel][:, axis] - middle), label=label, **style.LINES[line])
-        unit = f"${letter}$ {-middle:+g} m [mm]" if axis < 2 else f"${letter}$ [m]"
-        axes.set(ylabel=unit, xlim=(0, config.duration))
-        style.panel(axes, "abc"[axis], ("Sideways", "Sideways", "Height")[axis])
-    for axes in grid[0]:
-        axes.set_ylim(-0.1, 0.1)
-    depth, error = grid[1]
+    for case, (label, line) in LINES.items():
+        run = recordings[case]
+        depth.plot(run.time, run["arm.tip"][:, 2], label=label, **style.LINES[line])
+        if run.time[-1] < learned.time[-1] - 1.0:
+            depth.plot(run.time[-1], run["arm.tip"][-1, 2], "|", color=style.LINES[line]["color"], markersize=9)
+            depth.annotate("run ends", (run.time[-1], run["arm.tip"][-1, 2]), (3, -10), textcoords="offset points",
+                           fontsize=7, color=style.LINES[line]["color"])  # fmt: skip
+    for channel, label, line in (
+        ("reference", "virtual $x_0$, proposed", "extra2"),
+        ("path", "desired $x_d$", "reference"),
+    ):
+        depth.plot(learned.time, learned[channel][:, 2], label=label, **style.LINES[line])
+    style.panel(depth, "c", "Height")
+    for axis, (letter, line) in enumerate((("x, forward", "book"), ("y, sideways", "extra2"))):
+        deviation = 1e3 * (learned["arm.tip"][:, axis] - config.path.place[axis])
+        aside.plot(learned.time, deviation, label=f"${letter[0]}${letter[1:]}", **style.LINES[line])
+    aside.set(ylabel="Off the path [mm]", xlim=(0, config.duration), ylim=(-0.1, 0.1))
+    aside.legend(loc="upper right")
+    style.panel(aside, "a, b", "Across the path")
     surface = config.sponge.surface
+    depth.set(xlim=(0, config.duration), ylabel="$z$ [m]")
     depth.set(ylim=(0.04, 0.15), xlabel="Time [s]")
     depth.axhline(surface, color="#7A5C1E", linewidth=0.6)
     depth.annotate("sponge, relaxed", (17.8, surface + 0.001), fontsize=6.5, color="#7A5C1E", ha="right", va="bottom")
@@ -135,7 +141,7 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     error.set(ylabel="$z_{1z}$ [mm]", xlabel="Time [s]", xlim=(0, config.duration), ylim=(-8, 8))
     error.text(0.98, 0.05, f"bound $\\pm${1e3 * config.bound[2]:g} mm, far outside", transform=error.transAxes,
                fontsize=7, ha="right")  # fmt: skip
-    style.panel(error, "d", "Error to the virtual reference")
+    style.panel(error, "d", "Error to $x_0$")
     figure.legend(*depth.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     less = metrics["lqr"]["final_compression"] - metrics["learned"]["final_compression"]
     style.title(figure, f"The learned law presses {less:.1f} mm less in the end, but more while it learns")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -10,15 +11,16 @@ import numpy as np
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.own.drivers import driver
 from dexrepro.chapters.own.paths import leader_path
-from dexrepro.config import InputError
+from dexrepro.config import InputError, nearest
 from dexrepro.control.motion import Path
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms
-from dexrepro.physics.elements import Elastic, Ends
+from dexrepro.physics.elements import Elastic, Ends, Push, TipForce
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import RigidBody
+from dexrepro.physics.sensor import Sensor
 from dexrepro.physics.world import World
-from dexrepro.robots.arm import Arm
+from dexrepro.robots.arm import Arm, Link, Pose
 from dexrepro.robots.inverse_kinematics import Unreachable, solve
 from dexrepro.robots.kinematics import forward
 
@@ -39,19 +41,99 @@ def _vector(value: Any, length: int = 3) -> bool:
     return numbers and len(value) == length
 
 
-def scene(config: Config) -> World:
-    """The arm, the leader as a small sphere that is carried along its path, and the objects."""
+def scene(config: Config, noise: np.random.Generator | None = None) -> World:
+    """The arm, the leader as a small sphere that is carried along its path, the objects and what else acts on the arm.
+
+    noise: random numbers of the sensors, which are exact without.
+    """
+    given = {name: _blocks(config, name) for name in BLOCKS}
     world = World(step=config.step, gravity=config.gravity, perturbation=config.perturbation)
     path = leader_path(config)
-    world.add_arm("arm", config.arm, start(config, path), contacts=bool(config.box))
+    arm = loaded(config.arm, *given["payload"])
+    sensor = Sensor(**given["sensor"][0]) if given["sensor"] and noise else Sensor()
+    world.add_arm("arm", arm, start(config, path), contacts=bool(config.box), sensor=sensor, rng=noise)
     world.add_sphere("leader", 0.02, path(0.0).position.tolist(), colour=(0.84, 0.37, 0.0, 1.0), collides=False)
     world.add(_Carried(path))
-    if config.elastic:
-        world.add(Elastic("object", ("arm", "leader"), unilateral=True, **config.elastic))
+    for number, object_ in enumerate(given["elastic"]):
+        to = object_.pop("to", "leader")
+        world.add(Elastic(f"object{number or ''}", ("arm", to), unilateral=True, **object_))
+    for number, wall_ in enumerate(given["wall"]):
+        world.add(TipForce(f"wall{number or ''}", "arm", wall(**wall_)))
+    for number, push in enumerate(given["pushes"]):
+        link, point = push.get("link"), tuple(push.get("point", (0.0, 0.0, 0.0)))
+        names = [body.name for body in arm.links]
+        if link is not None and link not in names:
+            raise InputError(f"scene.pushes.{number}.link = {link} is not allowed: there are {', '.join(names)}")
+        force = pulse(push["force"], push["start"], push["duration"])
+        world.add(Push("arm", force, link, point, f"push{number or ''}"))
     if config.box:
         box = dict(config.box)
         world.add_box("box", box.pop("size"), box.pop("position"), **box)
     return world
+
+
+BLOCKS: dict[str, dict[str, int]] = {
+    "elastic": {"stiffness": 1, "rest_length": 1, "damping": 1, "to": 3},
+    "wall": {"point": 3, "normal": 3, "stiffness": 1, "damping": 1},
+    "pushes": {"force": 3, "start": 1, "duration": 1, "link": 0, "point": 3},
+    "payload": {"mass": 1, "com": 3},
+    "sensor": {field.name: 1 for field in fields(Sensor)},
+}
+"""Keys of the blocks that may be given, one or a list of them, and how many numbers each holds (0: a name)."""
+NEEDED = {"elastic": ("stiffness", "rest_length"), "wall": ("point", "normal", "stiffness"), "payload": ("mass",),
+          "pushes": ("force", "start", "duration"), "sensor": ()}  # fmt: skip
+
+
+def _blocks(config: Config, name: str) -> list[dict[str, Any]]:
+    """What the scene gives under a name. Raises InputError with key, value and what is allowed."""
+    given = config.get(name) or []
+    blocks = given if isinstance(given, list) else [given]
+    for number, block in enumerate(blocks):
+        where = f"scene.{name}.{number}" if isinstance(given, list) else f"scene.{name}"
+        if not isinstance(block, dict):
+            raise InputError(f"{where} = {block} is not allowed: it must have {', '.join(BLOCKS[name])}")
+        if unknown := [key for key in block if key not in BLOCKS[name]]:
+            raise InputError(f"unknown key '{where}.{unknown[0]}': {nearest(unknown[0], BLOCKS[name])}")
+        for key in (*NEEDED[name], *block):
+            value, length = block.get(key), BLOCKS[name][key]
+            fits = _vector(value, 3) if length == 3 else _vector([value], 1) if length == 1 else isinstance(value, str)
+            if not fits and not (key == "to" and value == "leader"):
+                kind = {0: "a name", 1: "a number", 3: "three numbers"}[length]
+                raise InputError(f"{where}.{key} = {value} is not allowed: it must be {kind}")
+    if len(blocks) > 1 and name in ("payload", "sensor"):
+        raise InputError(f"scene.{name} is given {len(blocks)} times; it must be one")
+    return [dict(block) for block in blocks]
+
+
+def loaded(arm: Arm, payload: Mapping[str, Any] | None = None) -> Arm:
+    """The arm with a payload at its end point, a ball of 3 cm, which no model knows; com: its centre there [m]."""
+    if payload is None:
+        return arm
+    mass, moment = payload["mass"], 0.4 * payload["mass"] * 0.03**2
+    ball = Link("payload", mass, tuple(payload.get("com", (0.0, 0.0, 0.0))), (moment, 0.0, 0.0, moment, 0.0, moment))
+    return replace(arm, fixed=(*arm.fixed, (arm.end, ball)), end=Pose())
+
+
+def wall(
+    point: Sequence[float], normal: Sequence[float], stiffness: float, damping: float = 0.0
+) -> Callable[[float, Array, Array], Array]:
+    """Force (3,) [N] of a flat wall on what is behind its ``point`` [m], seen along its outward ``normal``:
+    k d - c d' along the normal, d the depth [m], never pulling."""
+    length = float(np.linalg.norm(normal))
+    if not length > 0:
+        raise InputError("scene.wall.normal = [0, 0, 0] is not allowed: it must have a direction")
+    place, out = np.array(point, dtype=float), np.array(normal, dtype=float) / length
+
+    def law(_: float, position: Array, velocity: Array) -> Array:
+        depth = float(out @ (place - position))
+        return max(stiffness * depth - damping * float(out @ velocity), 0.0) * out if depth > 0 else 0.0 * out
+
+    return law
+
+
+def pulse(force: Sequence[float], start: float, duration: float) -> Callable[[float], Sequence[float]]:
+    """A constant force (3,) [N] from a time on for a duration [s]."""
+    return lambda time: force if start <= time < start + duration else (0.0, 0.0, 0.0)
 
 
 def start(config: Config, path: Path) -> Array:
@@ -105,7 +187,7 @@ class _Carried:
 
 def simulate(config: Config, rng: Rng) -> Recording:
     path, offset = leader_path(config), np.array(config.offset, dtype=float)
-    with scene(config) as world:
+    with scene(config, rng("sensor") if config.get("sensor") else None) as world:
         controller, wanted = driver(config, path, np.array(world.arms["arm"].q))
         length = np.linalg.norm(offset)
         recording = world.run(
