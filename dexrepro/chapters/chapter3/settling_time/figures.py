@@ -33,14 +33,15 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if not {"printed", "linear"} <= set(recordings):
         return {}
     figure, axes = style.subplots(height=2.8)
+    growth = []
     for case, (label, line) in CURVES.items():
         if case in recordings:
             worst = recordings[case].frames["settling"].groupby("error")["time"].max()
+            growth.append(worst[10.0] / worst[3.16] - 1)
             axes.plot(worst.index, worst / worst[1.0], marker="o", markersize=3, label=label, **style.LINES[line])
     axes.set(xscale="log", xlabel=r"First joint error $\|e_1(0)\|$ [rad]", ylabel="Settling time over that from 1 rad")
     axes.set_ylim(0, None)
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
-    growth = [metrics[case]["settling_10"] / metrics[case]["settling_3p16"] - 1 for case in ("printed", "linear")]
     style.title(
         figure,
         f"From 3.16 to 10 rad: printed gains {growth[0]:+.1%}, linear terms alone {growth[1]:+.1%} of settling time",
