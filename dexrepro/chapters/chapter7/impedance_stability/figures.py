@@ -16,8 +16,9 @@ FIGURES = {
     "7.B": Figure(
         "(a) Largest spectral radius of the sampled loop along the path against the gain k_s (line), and what the "
         "simulated arm does with that gain: torque travel (points, right axis; at the smallest gain the task itself). "
-        "Dashed: stability limit. (b) V = r' M r after an initial error of 0.2 rad in each joint, torque limit lifted, with "
-        "and without time-delay estimation. Not in the book, whose proof in continuous time has no upper bound.",
+        "Dashed: stability limit. (b) V = r' M r after an initial error of 0.2 rad in each joint, torque limit "
+        "lifted, with and without time-delay estimation. Not in the book, whose proof in continuous time has no upper "
+        "bound.",
         "Spectral radius and measured torque travel against the gain, and V over time, logarithmic.",
     ),
 }
