@@ -50,7 +50,8 @@ class Contents:
         self.plans = {plan.experiment: plan for plan in plans if plan.experiment in as_shipped}
         self.definitions = relations.definitions(self.chapter.folder) if made else {}
         self.errata = {item.id: self._erratum(item) for item in self.chapter.errata} if made else {}
-        self.experiments = [self._experiment(experiment) for experiment in made]
+        for experiment in made:
+            self.experiments.append(self._experiment(experiment))
         self.untestable = [
             self._claim(claim.evaluate({}).as_dict(), claim) for claim in self.chapter.claims if claim.not_testable
         ]
@@ -162,6 +163,7 @@ class Contents:
             "errata": touching,
             "equations": equations.numbers(text),
             "cases": list(dict.fromkeys(part[1] for part in names if len(part) > 2)),
+            "over_cases": any(len(part) == 2 for part in names),
             "line": self._line(entry["id"]),
             "experiment": names[0][0] if names else "",
         }

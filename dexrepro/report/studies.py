@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -12,8 +13,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from dexrepro import chapters
+from dexrepro.baselines import baseline_dir
+from dexrepro.claims import Claim
 from dexrepro.report import style, verdicts
-from dexrepro.study import summary_file
+from dexrepro.runner import flat
 
 ROW = 0.2  # inch a claim
 EDGES = (0.62, 0.42)  # inch above and below the rows
@@ -73,14 +76,26 @@ def save(study: Mapping[str, Any], path: Path) -> Path:
 
 
 def samples(study: Mapping[str, Any], results: Path) -> list[dict[str, Any]]:
-    """The samples behind a stored summary, {index, values, margins}; none where those at hand are not the same many."""
-    for shipped in (False, True):
-        path = summary_file(study["experiment"], results, shipped).with_suffix(".jsonl")
-        lines = path.read_text("utf-8").splitlines() if path.exists() else []
-        if lines and len(lines) == study["samples"]:
-            with suppress(ValueError):  # a line may have been cut short
-                return [{key: json.loads(line)[key] for key in ("index", "values", "margins")} for line in lines]
+    """The samples behind a stored summary, {index, values, margins}; none where those at hand are not the same many.
+
+    Margins are those of claims about single cases; a number over several cases is not made again.
+    """
+    name = study["experiment"]
+    for path in (results / "studies" / f"{name}.jsonl", baseline_dir() / "study" / f"{name}.jsonl.gz"):
+        if path.exists():
+            with suppress(ValueError, OSError, LookupError):  # a line may have been cut short
+                text = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
+                entries = [json.loads(line) for line in text.splitlines()]
+                if len(entries) == study["samples"]:
+                    claims = chapters.load(study["chapter"]).claims_of(name)
+                    return [_sample(name, claims, entry) for entry in entries]
     return []
+
+
+def _sample(experiment: str, claims: Sequence[Claim], entry: Mapping[str, Any]) -> dict[str, Any]:
+    metrics = flat(experiment, {case: row["metrics"] for case, row in entry["cases"].items() if "metrics" in row})
+    margins = {claim.id: claim.evaluate(metrics).margin for claim in claims}
+    return {"index": entry["index"], "values": entry["values"], "margins": margins}
 
 
 def _share(axes: Axes, place: int, row: Mapping[str, Any], look: Mapping[str, Any]) -> None:

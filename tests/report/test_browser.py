@@ -72,7 +72,9 @@ def test_a_claim_is_one_click_from_the_front_page(browser: Browser, report: Path
 
 def test_from_a_claim_to_its_line_and_back_to_the_command(browser: Browser, report: Path) -> None:
     browser.open(report / "chapter90.html", "#C90.02")
-    assert "dexrepro run chapter=90 only=decay" in browser.js("document.getElementById('C90.02').textContent")
+    assert "dexrepro run chapter=90 only=decay cases=plain seed=0" in browser.js(
+        "document.getElementById('C90.02').textContent"
+    )
     browser.js("[...document.querySelectorAll('#C90\\\\.02 a')].filter((a) => a.textContent == 'the claim')[0].click()")
     browser.wait("location.pathname.includes('/source/') && document.readyState == 'complete'")
     assert "C90.02" in browser.js("document.querySelector('code:target').textContent")

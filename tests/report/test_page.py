@@ -26,6 +26,7 @@ class Links(html.parser.HTMLParser):
             if key in ("href", "src") and value:
                 self.targets.append(value)
             if key == "id":
+                assert value not in self.ids, f"two things are named {value}"
                 self.ids.add(value)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -14,19 +15,38 @@ from dexrepro.runner import run_plans
 from dexrepro.storage import write_json
 
 
-def entry(index: int, margins: dict[str, float]) -> dict:
-    return {"index": index, "values": {"decay.start": float(index)}, "margins": margins, "error": None}
+def entry(index: int, largest: float) -> dict:
+    cases = {"plain": {"final": 1.0, "largest": largest}, "fast": {"final": 0.5}}
+    rows = {case: {"content": "", "metrics": metrics, "seconds": 0.0} for case, metrics in cases.items()}
+    return {"index": index, "values": {"decay.start": float(index)}, "cases": rows}
 
 
 @pytest.fixture
-def summary(toy: Path) -> dict:
+def entries() -> list[dict]:
     """Twenty samples: C90.01 always holds, C90.02 in the first half, by a margin that falls with the start."""
-    entries = [entry(k, {"C90.01": 0.5, "C90.02": 0.95 - k / 10}) for k in range(20)]
+    return [entry(k, 0.2625 + 0.025 * k) for k in range(20)]
+
+
+@pytest.fixture
+def summary(toy: Path, entries: list[dict]) -> dict:
     return study.summary("90", "decay", entries)
 
 
 def test_the_margin_is_summarised_by_quantiles(summary: dict) -> None:
-    assert summary["claims"]["C90.02"]["quantiles"] == pytest.approx([-0.855, -0.475, 0.0, 0.475, 0.855])
+    expected = [-0.4275, -0.2375, 0.0, 0.2375, 0.4275]
+    assert summary["claims"]["C90.02"]["quantiles"] == pytest.approx(expected)
+
+
+def test_the_samples_of_a_study_are_those_of_its_summary(summary: dict, entries: list[dict]) -> None:
+    lines = Path("results/studies/decay.jsonl")
+    lines.parent.mkdir(parents=True)
+    lines.write_text("".join(json.dumps(item) + "\n" for item in entries))
+    draws = studies.samples(summary, Path("results"))
+    assert [draw["margins"]["C90.02"] > 0 for draw in draws] == [True] * 10 + [False] * 10
+    assert draws[3]["values"] == {"decay.start": 3.0}
+    assert draws[3]["margins"]["C90.03"] is None
+    lines.write_text("".join(json.dumps(item) + "\n" for item in entries[:5]))
+    assert studies.samples(summary, Path("results")) == [], "of another number of samples than the summary"
 
 
 def test_the_figure_shows_shares_intervals_and_what_a_claim_follows(summary: dict) -> None:

@@ -185,6 +185,26 @@ ERRATA = (
         "role. A heuristic.",
     ),
     Erratum(
+        "E6.20",
+        "below (6.6)",
+        "slip",
+        "f_2 is given as alpha_z (beta_z (g - x) - v), without the 1 / tau that v' of (6.6) needs and Remark 6.4 has.",
+        "f_2 = alpha_z (beta_z (g - x) - v) / tau.",
+    ),
+    Erratum(
+        "E6.21",
+        "Fig. 6.8, (6.24), (6.25)",
+        "gap",
+        "Loop 1 corrects the elbow from the shoulder and the wrist from the elbow; (6.24) and (6.25) print constraints "
+        "on the shoulder about the elbow and on the elbow about the wrist only, those of loop 2.",
+        "Loop 1 holds the elbow at 22 cm from the shoulder and the wrist at 28 cm from the elbow, in their present "
+        "directions and with the same margin.",
+        switch="skeleton_constraints.loop1=false",
+        evidence=tuple(
+            f"skeleton_constraints.{case}.rmse_shoulder_left_constrained" for case in ("feedforward", "no_loop1")
+        ),
+    ),
+    Erratum(
         "E6.19",
         "6.3.1",
         "reading",

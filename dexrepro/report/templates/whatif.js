@@ -5,13 +5,15 @@ const FRAME = { width: 720, height: 300, left: 60, right: 12, top: 12, bottom: 4
 
 function whatIf(place, study) {
   const varied = Object.keys(study.varied);
+  const claims = study.claims.filter((c) => study.draws.some((d) => d.margins[c.id] != null));
+  if (!claims.length) return;
   const pick = (word, values, texts) => {
     const select = make("select");
     values.forEach((value, i) => select.append(make("option", { value, textContent: texts[i] })));
     select.addEventListener("input", draw);
     return [select, make("label", {}, `${word} `, select)];
   };
-  const [claim, claimLabel] = pick("Claim", study.claims.map((c) => c.id), study.claims.map((c) => `${c.id} ${c.statement}`));
+  const [claim, claimLabel] = pick("Claim", claims.map((c) => c.id), claims.map((c) => `${c.id} ${c.statement}`));
   const [parameter, parameterLabel] = pick("Parameter", varied, varied);
   claim.addEventListener("input", suggest);
   const picture = document.createElementNS("http://www.w3.org/2000/svg", "svg");

@@ -19,6 +19,7 @@ from dexrepro.robots.arm import Pose, Shape
 RATE = 100.0
 INK = (0.05, 0.1, 0.4, 1.0)
 VIEW = Camera(target=(0.10, 0.0, -0.06), distance=0.36, yaw=125.0, pitch=-35.0, field_of_view=42.0)
+WRITER = Camera(target=(0.155, 0.0, -0.09), distance=0.27, yaw=-125.0, pitch=-60.0, field_of_view=33.0)
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
@@ -75,13 +76,15 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
 
 
 def _picture(recording: Recording, config: Config) -> Any:
-    """The arm at the end of its letter, the ink as a chain of beads."""
-    tip = recording["arm.tip"][:: max(1, len(recording.time) // 400)]
-    ink = tuple(Shape("sphere", (0.0007,), Pose(tuple(point)), INK) for point in tip.tolist())
+    """The arm at the end of its letter from the writer's side, the ink after the first transient as a chain of "
+    "beads."""
+    tip = recording["arm.tip"][recording.between(0.4)]
+    tip = tip[:: max(1, len(tip) // 600)]
+    ink = tuple(Shape("sphere", (0.0009,), Pose(tuple(point)), INK) for point in tip.tolist())
     with scene(config) as world:
         for first in range(0, len(ink), 16):
             world.add_body(f"ink{first}", ink[first : first + 16], (0, 0, 0), collides=False)
-        return world.render({"arm": recording["arm.position"][-1]}, camera=VIEW, size=(900, 640))
+        return world.render({"arm": recording["arm.position"][-1]}, camera=WRITER, size=(900, 640))
 
 
 def measure(recording: Recording, config: Config) -> Metrics:

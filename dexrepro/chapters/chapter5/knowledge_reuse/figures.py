@@ -14,7 +14,7 @@ FIGURES = {
         "RMS joint error in the first second of each letter and over the whole letter, for a network that keeps its "
         "weights and gains ten nodes a letter and for one that starts anew with as many nodes. Ours; the book says "
         "that learned weights can be accumulated and reused.",
-        "From the second letter on the network that keeps its weights starts with a smaller error.",
+        "Errors in the first second and over each letter, weights kept and learned anew.",
     ),
 }
 TABLES = {"T5.I": "RMS joint error [mrad] with weights kept, learned anew, or kept under the printed sign"}
@@ -37,7 +37,9 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     axes[0].set_ylabel("RMS joint error [mrad]")
     axes[1].legend()
     gain = min(metrics["anew"][f"{n}.early"] / metrics["kept"][f"{n}.early"] for n in names[1:])  # type: ignore[operator]
-    style.title(figure, f"Kept weights begin each later letter with an error at least {gain:.1f} times smaller")
+    style.title(
+        figure, f"Kept weights begin each later letter with an error at least {style.at_least(gain, 1)} times smaller"
+    )
     return {"5.E": figure}
 
 

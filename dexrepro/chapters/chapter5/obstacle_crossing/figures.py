@@ -18,12 +18,12 @@ FIGURES = {
         "three blocks as features are added, thin: every five features; (c, d) the learned skills (thick) and their "
         "generalisations to nine goals (orange), in space and from the side, with the smallest distance of the paths "
         "from the obstacle. Synthetic demonstrations; the book shows recorded ones.",
-        "The skill rises from one to three blocks and reaches all nine goals without touching the obstacle.",
+        "Demonstrated, learned and generalised paths over one, two and three blocks, in space and from the side.",
     ),
     "5.C": Figure(
         "How much the path changes with every five added features, from one block to two and from two to three; all "
         "draws (thin) and their median. Ours.",
-        "The changes shrink to about a hundredth of the first.",
+        "Change of the path with every five features, of all draws and their median.",
     ),
 }
 TABLES = {
@@ -88,7 +88,8 @@ def crossings(recording: Recording, metrics: Any, config: Config) -> Drawing:
     style.legend_below(figure, {name: {"color": colour} for name, colour in colours.items()})
     worst = min(metrics[f"goals{b}.clearance"] for b in (2, 3))
     style.title(
-        figure, f"Added features lift the skill over three blocks; no path comes nearer to them than {worst:.1f} cm"
+        figure,
+        f"Added features lift the skill; no path of any draw comes nearer than {style.at_least(worst, 1)} cm",
     )
     return figure
 
@@ -164,5 +165,8 @@ def changes(recording: Recording, metrics: Any, config: Config) -> Drawing:
         panel.set(yscale="log", xlabel="Added features m [-]", title=f"{blocks - 1} to {blocks} blocks")
     axes[0].set_ylabel("RMS change\nof the path [cm]")
     worst = max(metrics[f"skill{b}.last_change"] for b in (2, 3))
-    style.title(figure, f"The path changes less and less: the last step is at most {100 * worst:.0f} % of the first")
+    style.title(
+        figure,
+        f"The last five features change the path by at most {style.at_most(100 * worst, 0)} % of what the first do",
+    )
     return figure

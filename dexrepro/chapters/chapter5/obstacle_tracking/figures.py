@@ -25,7 +25,7 @@ FIGURES = {
     "5.F": Figure(
         "Share of the bound that the joint errors use (all 18 runs) and smallest distance of the tracked tip from the "
         "obstacle for every goal. Ours.",
-        "All 18 crossings stay inside the bound and clear of the obstacle.",
+        "Share of the bound used over time, and clearance of the tip for every goal.",
     ),
 }
 TABLES = {"T5.J": "Tracked crossings: clearance [cm], bound used, tip error [mm], distance from the goal [mm]"}

@@ -19,7 +19,7 @@ FIGURES = {
         "random features are added, five at a time, along the diagonals; black frames: demonstrations. Only the "
         "weights of the new features are learned. Right: distance to the target and to the initial letter over the "
         "number of added features, median of the draws. The book shows the left part.",
-        "The shapes leave the letter a gradually and are clearly distinct letters after 30 added features.",
+        "Shapes between the letter a and four others by added features, and their distances from both.",
     ),
     "5.B": Figure(
         "Mixing styles by their weights, Eq. (5.30): from one letter (alpha = 1) to another (alpha = 0). The result is "

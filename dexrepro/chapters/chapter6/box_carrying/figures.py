@@ -14,7 +14,7 @@ FIGURES = {
         "Two simulated arms carry a box of 0.6 kg between flat palms, without any grip but friction: rendered "
         "instants, distance of the box from the middle between the palms, and the smaller palm force. The book shows "
         "photographs of the constrained case.",
-        "Along the constrained paths the box is carried and put down; along the original ones it is dropped.",
+        "Pictures of the arms with the box, its distance from the hands and the palm forces, for two sets of paths.",
     ),
 }
 TABLES = {"T6.Sd": "Variants of law, squeeze and joint stiffness in carrying the box"}
@@ -66,5 +66,5 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     left.legend(loc="center right")
     kept, dropped = metrics["constrained"]["box_error_max"], metrics["original"]["lost_at"]
     late = f",\nalong the original ones it is lost {dropped:.1f} s after the start" if dropped else ""
-    style.title(figure, f"Along constrained paths the box strays {kept:.1f} cm at most{late}")
+    style.title(figure, f"Along constrained paths the box strays {style.at_most(kept or 0.0, 1)} cm at most{late}")
     return {"6.12": figure}

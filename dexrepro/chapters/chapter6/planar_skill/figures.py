@@ -101,8 +101,8 @@ def _extended(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any)
         path = lines[name]
         axes.plot(*path.T, color=colour, linestyle=dash, label=f"sub-skill {text}")
         axes.plot(*path[lies_inside(path, [*old, block])].T, "x", color="black", markersize=2.5, markeredgewidth=0.5)
-    share = 100 * numbers["inside_share_extended_min"]
-    return f"Extended sub-skills run through old\nobstacles (at least {share:.0f} % of the samples)"
+    share = style.at_least(100 * numbers["inside_share_extended_old_min"], 0)
+    return f"Extended sub-skills run through old\nobstacles (at least {share} % of the samples)"
 
 
 _PANELS = {"6.1": _demonstrations, "6.2a": _learned, "6.2b": _spline, "6.2c": _extended}
