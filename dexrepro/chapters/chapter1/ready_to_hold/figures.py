@@ -21,8 +21,9 @@ FIGURES = {
         "The measured position scatters about a point 18 mm from the true centre.",
     ),
     "1.16": Figure(
-        "Simulated Baxter. Top: pictures at the book's instants. Then: AFR, DFR and object along the holding line and "
-        "across it; clearance of AFR's end point from the object; weights; angles between the tools' axes and between "
+        "Simulated Baxter. Top: pictures at the book's instants. Then: AFR, DFR and object along the holding line, "
+        "across it and up; clearance of AFR's end point from the object, which feels no contact here, so that it ends "
+        "inside; weights; angles between the tools' axes and between "
         "AFR's axis and the direction to DFR. The book shows photographs.",
         "AFR follows the object at a distance, comes to it when DFR does and keeps facing DFR.",
     ),
@@ -42,7 +43,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     return {
         "1.7": _draw_field(recording.frames["field"], config),
         "1.12": _draw_camera(recording, config),
-        "1.16": _draw_task(recording, config),
+        "1.16": _draw_task(recording, config, float(metrics["adjustable"]["pointing"] or 0.0)),
     }
 
 
@@ -96,37 +97,38 @@ def _draw_camera(recording: Recording, config: Config) -> Drawing:
     return figure
 
 
-def _draw_task(recording: Recording, config: Config) -> Drawing:
+def _draw_task(recording: Recording, config: Config, off: float) -> Drawing:
+    """off: largest angle between AFR's axis and the direction to DFR [deg]."""
     from dexrepro.report import style
 
-    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 7.6))
-    grid = figure.add_gridspec(6, 7, height_ratios=(0.55, 1.1, 1.1, 0.8, 0.6, 0.8))
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 8.6))
+    grid = figure.add_gridspec(7, 7, height_ratios=(0.7, 1, 1, 1, 0.8, 0.6, 0.8))
     pictures = style.trimmed(recording.images)
     for k, (name, at) in enumerate(INSTANTS.items()):
         axis = figure.add_subplot(grid[0, k])
         axis.imshow(pictures[name])
         axis.set_axis_off()
         axis.set_title(f"({name}) {at:g} s", fontsize=7)
-    axes = [figure.add_subplot(grid[row, :]) for row in range(1, 6)]
+    axes = [figure.add_subplot(grid[row, :]) for row in range(1, 7)]
     time = recording.time
-    for k, (axis, label) in enumerate(zip(axes[:2], ("Along [m]", "Up [m]"))):
+    for k, axis, label in zip((1, 0, 2), axes, ("Along [m]", "Across [m]", "Up [m]")):
         for name, role in (("follower", "book"), ("leader", "extra1"), ("object", "reference")):
-            axis.plot(time, recording[name][:, 1 + k], label={"follower": "AFR", "leader": "DFR"}.get(name, name),
+            axis.plot(time, recording[name][:, k], label={"follower": "AFR", "leader": "DFR"}.get(name, name),
                       **style.LINES[role])  # fmt: skip
         axis.set_ylabel(label)
     axes[0].legend(ncols=3, loc="lower right")
     clearance = np.linalg.norm(recording["follower"] - recording["object"], axis=1) - config.radius
-    axes[2].axhline(0, color="black", linewidth=0.4)
-    axes[2].plot(time, 1e3 * clearance, **style.LINES["book"])
-    axes[2].set_ylabel("Clearance [mm]")
+    axes[3].axhline(0, color="black", linewidth=0.4)
+    axes[3].plot(time, 1e3 * clearance, **style.LINES["book"])
+    axes[3].set_ylabel("Clearance [mm]")
     for k, role in ((0, "plain"), (2, "book")):
-        axes[3].plot(time, recording["weights"][:, k], label=f"$w_{k + 1}$", **style.LINES[role])
-    axes[3].set_ylabel("Weight [-]")
-    axes[3].legend(loc="center right")
+        axes[4].plot(time, recording["weights"][:, k], label=f"$w_{k + 1}$", **style.LINES[role])
+    axes[4].set_ylabel("Weight [-]")
+    axes[4].legend(loc="center right")
     for name, role in (("facing", "book"), ("pointing", "rival")):
-        axes[4].plot(time, np.rad2deg(recording[name]), label=name, **style.LINES[role])
-    axes[4].set(xlabel="Time [s]", ylabel="Angle [deg]")
-    axes[4].legend(ncols=2, loc="upper right")
+        axes[5].plot(time, np.rad2deg(recording[name]), label=name, **style.LINES[role])
+    axes[5].set(xlabel="Time [s]", ylabel="Angle [deg]")
+    axes[5].legend(ncols=2, loc="upper right")
     words = ("left, right", "back, forth", "up, down", "DFR comes", "held", "yaw", "yaw and pitch")
     edges = (0.0, 6.0, 12.0, SHAKEN, APPROACH, HOLD, PITCHED, time[-1])
     for axis in axes[:-1]:
@@ -139,7 +141,9 @@ def _draw_task(recording: Recording, config: Config) -> Drawing:
     for k, word in enumerate(words):
         axes[0].annotate(word, (0.5 * (edges[k] + edges[k + 1]), 1.0), xycoords=("data", "axes fraction"),
                          fontsize=6.5, ha="center", va="bottom", color="#555555")  # fmt: skip
-    style.title(figure, "AFR keeps its distance while the object moves, comes when DFR comes, and faces it throughout")
+    style.title(
+        figure, f"AFR keeps its distance, comes when DFR comes and points to it within {style.at_most(off, 1)} deg"
+    )
     return figure
 
 
