@@ -26,7 +26,7 @@ def run(chapter: int | str, overrides: list[str] | None = None, **settings: Any)
 
     settings: ``only``, ``figure``, ``seed``, ``results``, ``workers``, ``force``; overrides: Hydra's grammar, for
     example ``["movement_estimation.stiffness=[25,60]"]``. Raises RuntimeError with one sentence a failed case, and
-    dexrepro.config.InputError for input that cannot be used.
+    dexrepro.errors.InputError for input that cannot be used.
     """
     from dexrepro.plan import plan_chapter
     from dexrepro.runner import run_plans

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters
-from dexrepro.config import InputError, in_quotes
+from dexrepro.config import in_quotes
+from dexrepro.errors import InputError
 from dexrepro.plan import outdated, plan_chapter, select
 from dexrepro.report.damage import check_result, read_table
 from dexrepro.runner import run_plans

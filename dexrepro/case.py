@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from dexrepro.config import InputError, leaves
+from dexrepro.checks import leaves
+from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
 from dexrepro.storage import finite
 

@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.table import Table
 
 from dexrepro import __version__
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 
 if TYPE_CHECKING:
     from dexrepro.baselines import ChapterReport

@@ -68,7 +68,7 @@ def _values(key: str, numbers: Iterable[str], given: dict[str, str]) -> Iterable
 
 
 def _parameters(number: str, prefix: str) -> Iterable[str]:
-    from dexrepro.config import provenance
+    from dexrepro.provenance import provenance
 
     experiment = prefix.partition(".")[0]
     return provenance(number) if experiment in (*chapters.names(number), "shared") else ()

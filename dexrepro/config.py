@@ -1,25 +1,12 @@
-"""From conf/ and the user's overrides to one resolved, checked configuration a case.
-
-Provenance: each leaf of conf/chapter/N/EXPERIMENT.yaml says on its line where it comes from, in one grammar::
-
-    stiffness: 45   # k_o [N/m] | printed 2.4.1.1
-    rest_length: 0.55   # m | chosen: equals the printed initial estimate | 0.5..0.65
-    rate: 30   # 1/s | derived: sqrt of stiffness over mass
-    motion: ramp   # - | printed 1.5.1 | one of ramp, sine
-
-The book's symbol, where it has one, stands before the unit, which is then in brackets.
-"""
+"""From conf/ and the user's overrides to one resolved, checked configuration a case."""
 
 from __future__ import annotations
 
 import copy
-import difflib
 import math
 import re
-import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -34,12 +21,10 @@ from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from dexrepro import chapters
+from dexrepro.checks import check_values, is_number, is_whole, leaves
+from dexrepro.errors import InputError, nearest
 
 SETTINGS = ("only", "case", "figure", "seed", "results", "workers", "case_timeout", "force", "quiet", "gui")
-
-
-class InputError(Exception):
-    """Something the user wrote cannot be used; the message is one sentence that says what would be right."""
 
 
 def config_dir() -> Path:
@@ -59,143 +44,6 @@ def config_files(chapter: str) -> dict[str, Path]:
         files = {path.parent.name: path for path in sorted(folder.glob("*/config.yaml"))}
         return {"shared": shared, **files} if (shared := folder / "shared.yaml").exists() else files
     return {path.stem: path for path in sorted((config_dir() / "chapter" / chapter).glob("*.yaml"))}
-
-
-def nearest(name: str, valid: Iterable[str]) -> str:
-    """Half a sentence that helps with a misspelt name."""
-    valid = list(valid)
-    close = difflib.get_close_matches(name, valid, n=1, cutoff=0.5)
-    if not close and "." in name:  # the right key under another parent
-        close = [key for key in valid if key.rpartition(".")[2] == name.rpartition(".")[2]][:1]
-    if close:
-        return f"did you mean '{close[0]}'?"
-    return f"there are: {', '.join(valid[:30])}{', ...' if len(valid) > 30 else ''}"
-
-
-# ---------------------------------------------------------------------------------------------------- provenance
-
-
-@dataclass(frozen=True)
-class Provenance:
-    """Where a parameter comes from: unit, kind (printed, chosen or derived), text, and the range worth varying.
-
-    words: those that a parameter which is a word may take ("| one of ramp, sine"; "| any" leaves it free).
-    symbol: the book's, in plain letters: ``lambda_1``, ``khat_o(0)``, ``rho_{1,0}``; None where it has none.
-    """
-
-    unit: str
-    kind: str
-    text: str
-    low: float | None = None
-    high: float | None = None
-    symbol: str | None = None
-    words: tuple[str, ...] = ()
-
-
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_COMMENT = re.compile(
-    r"^(?:(?P<symbol>[^|\[]+?)\s*\[)?(?P<unit>[^|\]]*?)\]?\s*"
-    r"\|\s*(?P<kind>printed|chosen|derived)\b:?\s*(?P<text>[^|]*?)\s*"
-    rf"(?:\|\s*(?:(?P<low>{_NUMBER})\s*\.\.\s*(?P<high>{_NUMBER})|one of (?P<words>[\w, ]+)|any)\s*)?$"
-)
-_LINE = re.compile(r"^(?P<indent> *)(?P<key>[\w.\-]+|'[^']+'|\"[^\"]+\"):(?:\s+(?P<rest>.*))?$")
-
-
-def parse_provenance(comment: str) -> Provenance | None:
-    """One comment in the grammar above, or None where it does not follow it."""
-    match = _COMMENT.match(comment.strip())
-    if not match:
-        return None
-    low, high = match["low"], match["high"]
-    return Provenance(
-        match["unit"].strip(),
-        match["kind"],
-        match["text"],
-        float(low) if low else None,
-        float(high) if high else None,
-        match["symbol"],
-        tuple(word.strip() for word in (match["words"] or "").split(",") if word.strip()),
-    )
-
-
-def leaves_with_comments(text: str) -> Iterator[tuple[str, str, str]]:
-    """(dotted key, value text, comment) of every leaf of a YAML text whose leaves stand on one line each."""
-    stack: list[tuple[int, str]] = []
-    depth = 0
-    for line in text.splitlines():
-        if depth > 0:  # the rest of a bracket opened on an earlier line
-            body = line.partition(" #")[0]
-            depth += sum(body.count(c) for c in "[{") - sum(body.count(c) for c in "]}")
-            continue
-        match = _LINE.match(line)
-        if not match:
-            continue
-        indent, key = len(match["indent"]), match["key"].strip("'\"")
-        while stack and stack[-1][0] >= indent:
-            stack.pop()
-        value, _, comment = (" " + (match["rest"] or "")).partition(" #")
-        value = value.strip()
-        dotted = ".".join([name for _, name in stack] + [key])
-        if value:
-            depth = sum(value.count(c) for c in "[{") - sum(value.count(c) for c in "]}")
-            yield dotted, value, comment.strip()
-        else:
-            stack.append((indent, key))
-
-
-def provenance(chapter: str) -> dict[str, Provenance]:
-    """Provenance of every leaf of a chapter's configuration that states one."""
-    return {key: found for key, _, comment in commented_leaves(chapter) if (found := parse_provenance(comment))}
-
-
-def commented_leaves(chapter: str) -> Iterator[tuple[str, str, str]]:
-    """(dotted key, value text, comment) of every leaf of a chapter's configuration."""
-    for name, path in config_files(chapter).items():
-        for key, value, comment in leaves_with_comments(path.read_text("utf-8")):
-            yield f"{name}.{key}", value, comment
-
-
-def origin_of(
-    key: str, composed: Mapping[str, Any], origins: Mapping[str, Provenance]
-) -> tuple[Provenance | None, str | None]:
-    """A parameter's own comment, completed by that of the parameter or block it refers to; and the symbol's home."""
-    parts = key.split(".")
-    nearest = next((".".join(parts[:n]) for n in range(len(parts), 1, -1) if ".".join(parts[:n]) in origins), None)
-    own = origins[nearest] if nearest else None
-    if own and own.symbol:
-        return own, nearest
-    node: Any = composed
-    for depth, part in enumerate(parts, 1):
-        node = node.get(part) if isinstance(node, Mapping) else None
-        if isinstance(node, str) and node.startswith("${") and node.endswith("}"):
-            further, home = origin_of(".".join([node[2:-1], *parts[depth:]]), composed, origins)
-            if own and further:
-                return replace(own, symbol=further.symbol, words=own.words or further.words), home
-            return own or further, home
-    return own, None
-
-
-@cache
-def words_of(chapter: str, experiment: str) -> dict[str, tuple[str, ...]]:
-    """Words that the parameters of an experiment may take, by key within the experiment, where they are declared."""
-    composed, origins = compose_chapter(chapter), provenance(chapter)
-    found = {}
-    for key, value in leaves(resolved_block(composed, experiment)):
-        if isinstance(value, str):
-            origin, _ = origin_of(f"{experiment}.{key}", composed, origins)
-            if origin and origin.words:
-                found[key] = origin.words
-    return found
-
-
-def check_words(config: Mapping[str, Any], words: Mapping[str, tuple[str, ...]], where: str) -> None:
-    """Refuse a word that no branch of the code knows, naming those there are."""
-    for key, value in leaves(config):
-        if isinstance(value, str) and value not in words.get(key, (value,)):
-            raise InputError(f"{where}.{key} = {value} is not allowed: it must be one of {', '.join(words[key])}")
-
-
-# ------------------------------------------------------------------------------------------------------- composing
 
 
 def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str | None = None) -> dict[str, Any]:
@@ -386,7 +234,7 @@ def check_settings(composed: Mapping[str, Any]) -> None:
     if removed := [key for key in SETTINGS if key not in composed]:
         raise InputError(f"'{removed[0]}' cannot be left out; give it a value instead")
     seed, results, figure = composed["seed"], composed["results"], composed["figure"]
-    if not _whole(seed) or not 0 <= seed < 1 << 64:
+    if not is_whole(seed) or not 0 <= seed < 1 << 64:
         raise InputError(
             f"seed = {str(seed)[:40]} is not allowed: it must be a whole number of 0 or greater, below 2^64"
         )
@@ -398,7 +246,7 @@ def check_settings(composed: Mapping[str, Any]) -> None:
     if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]*", name := str(scene.get("name"))):
         raise InputError(f"scene.name = {name} is not allowed: it names a folder; use letters, digits, '_' and '-'")
     timeout = composed["case_timeout"]
-    if timeout is not None and not (_number(timeout) and 0 < timeout < math.inf):
+    if timeout is not None and not (is_number(timeout) and 0 < timeout < math.inf):
         raise InputError(f"case_timeout = {timeout} is not allowed: it must be a number of seconds greater than 0")
     for key in ("force", "quiet", "gui"):
         if not isinstance(composed[key], bool):
@@ -537,106 +385,3 @@ def _looked_up(node: Any, names: Mapping[str, Any], within: tuple[str, ...]) -> 
             raise _NotPlainError
         target = target[part]
     return _looked_up(target, names, (*within, match[1]))
-
-
-# ------------------------------------------------------------------------------------------------------- checking
-
-_POSITIVE = re.compile(
-    r"(^|_)(mass|masses|lengths?|period|step|duration|inertia|samples|repetitions|substeps|time_constant|radius)$"
-)
-_NOT_NEGATIVE = re.compile(r"(^|_)(stiffness|damping|friction|noise|noise_std|delay|width|height|cutoff|tolerance)$")
-
-
-def check_values(config: Mapping[str, Any], where: str) -> None:
-    """Refuse values outside their physical range, in one sentence that names key, value and range."""
-    for key, value in leaves(config):
-        name = next((part for part in reversed(key.split(".")) if not part.isdigit()), key)
-        if not isinstance(value, int | float) or isinstance(value, bool):
-            continue
-        if not abs(value) < math.inf or abs(value) > sys.float_info.max:
-            raise InputError(f"{where}.{key} = {str(value)[:20]} is not allowed: it must be a finite number")
-        if _POSITIVE.search(name) and value <= 0:
-            raise InputError(f"{where}.{key} = {value} is not allowed: it must be greater than 0")
-        if _NOT_NEGATIVE.search(name) and value < 0:
-            raise InputError(f"{where}.{key} = {value} is not allowed: it must be 0 or greater")
-    values = dict(leaves(config))
-    steps = [v for k, v in values.items() if k.rpartition(".")[2] in ("control_period", "step") and _number(v)]
-    for key, value in values.items():
-        if key.rpartition(".")[2] == "duration" and _number(value) and steps and value < min(steps):
-            raise InputError(
-                f"{where}.{key} = {value} is not allowed: it must be at least one step of {min(steps):g} s"
-            )
-
-
-def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
-    """Refuse what is no number where the shipped configuration has a number, or numbers in lists.
-
-    null stays possible, for it turns many a thing off, but not for what is a quantity by its name.
-    """
-    for key, book in shipped.items():
-        if key not in config:
-            continue
-        value = config[key]
-        if isinstance(book, Mapping) and isinstance(value, Mapping):
-            check_types(value, book, f"{where}.{key}")
-        numbers = [_number(item) for _, item in leaves(book)]
-        if not isinstance(book, Mapping) and numbers and all(numbers):
-            for place, item in leaves(value):
-                quantity = _POSITIVE.search(key) or _NOT_NEGATIVE.search(key)
-                if not _number(item) and (item is not None or quantity):
-                    dotted = f"{where}.{key}.{place}".rstrip(".")
-                    shown = "null" if item is None else repr(item)
-                    raise InputError(f"{dotted} = {shown} is not allowed: it must be a number")
-
-
-_A_LINK = ("lengths", "masses", "inertias", "centres")  # one value a link each
-_VECTOR = re.compile(r"(^|_)(base|centre|place|offset|force|gravity|semi_axes|position|pose|start|goal)$")
-
-
-def check_lengths(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
-    """Refuse lists that do not have as many numbers as what they describe has: a link, an axis, a joint."""
-    links = {key: len(config[key]) for key in _A_LINK if isinstance(config.get(key), list)}
-    if len(set(links.values())) > 1:
-        shown = ", ".join(f"{key} has {count}" for key, count in links.items())
-        raise InputError(f"{where}: {shown} values: each must have one for every link")
-    for key, value in config.items():
-        book = shipped.get(key)
-        if isinstance(value, Mapping) and isinstance(book, Mapping):
-            check_lengths(value, book, f"{where}.{key}")
-        elif isinstance(value, list) and isinstance(book, list) and _VECTOR.search(key) and len(value) != len(book):
-            raise InputError(f"{where}.{key} = {value} is not allowed: it must have {len(book)} values")
-
-
-def _whole(value: Any) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool)
-
-
-def _number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def leaves(node: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """(dotted key, value) of everything in nested dictionaries and lists."""
-    items: Iterable[tuple[Any, Any]] = ()
-    if isinstance(node, Mapping):
-        items = node.items()
-    elif isinstance(node, list):
-        items = enumerate(node)
-    else:
-        yield prefix, node
-    for key, value in items:
-        yield from leaves(value, f"{prefix}.{key}" if prefix else str(key))
-
-
-def differences(config: Mapping[str, Any], shipped: Mapping[str, Any], prefix: str = "") -> list[str]:
-    """Keys in which two configurations differ, as ``key=value (book: value)``."""
-    found: list[str] = []
-    for key in dict.fromkeys([*config, *shipped]):
-        mine, theirs = config.get(key), shipped.get(key)
-        if isinstance(mine, Mapping) and isinstance(theirs, Mapping):
-            found += differences(mine, theirs, f"{prefix}{key}.")
-        elif key not in config:
-            found.append(f"{prefix}{key} left out")
-        elif mine != theirs:
-            found.append(f"{prefix}{key}={mine} (book: {theirs if key in shipped else 'absent'})")
-    return found

@@ -20,21 +20,11 @@ from typing import Any
 
 from dexrepro import chapters, closure
 from dexrepro.case import targets
-from dexrepro.config import (
-    SETTINGS,
-    InputError,
-    check_lengths,
-    check_types,
-    check_words,
-    compose_chapter,
-    differences,
-    experiment_cases,
-    leaves,
-    nearest,
-    resolved_block,
-    words_of,
-)
+from dexrepro.checks import check_lengths, check_types, check_words, differences, leaves
+from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block
+from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Experiment
+from dexrepro.provenance import words_of
 from dexrepro.storage import digest_of
 
 NUMERICAL = ("numpy", "scipy", "pybullet")  # packages whose version can change a number

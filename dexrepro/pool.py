@@ -25,7 +25,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 
 TICK = 0.2  # s between looks at workers whose end nobody announces
 COMPLETES = "the same command completes what is missing"

@@ -20,7 +20,7 @@ from typing import Any
 from dexrepro import __version__, chapters
 from dexrepro.case import live
 from dexrepro.case import run as run_case
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics
 from dexrepro.plan import NUMERICAL, PARTIAL, Job, Plan, import_anew, own_digest, presentation
 from dexrepro.pool import COMPLETES, Failure, Pool, start_method

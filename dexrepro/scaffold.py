@@ -7,7 +7,7 @@ import keyword
 from pathlib import Path
 from typing import NamedTuple
 
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 
 
 class Template(NamedTuple):

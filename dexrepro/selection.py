@@ -9,17 +9,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dexrepro import chapters
-from dexrepro.config import (
-    InputError,
-    as_written,
-    check_overrides,
-    compose_chapter,
-    forced,
-    in_quotes,
-    nearest,
-    own_keys,
-    parsed,
-)
+from dexrepro.config import as_written, check_overrides, compose_chapter, forced, in_quotes, own_keys, parsed
+from dexrepro.errors import InputError, nearest
 from dexrepro.plan import select
 
 FILES = ("demonstrations", "csv", "file", "path")  # keys whose values are names of files

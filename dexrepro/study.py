@@ -30,21 +30,15 @@ from dexrepro.arrays import Array
 from dexrepro.baselines import baseline_dir
 from dexrepro.case import live
 from dexrepro.case import run as run_case
+from dexrepro.checks import leaves
 from dexrepro.claims import LOOKS, OPEN, Claim, robustness
-from dexrepro.config import (
-    InputError,
-    Provenance,
-    compose_chapter,
-    experiment_cases,
-    leaves,
-    nearest,
-    provenance,
-    resolved_block,
-)
+from dexrepro.config import compose_chapter, experiment_cases, resolved_block
+from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Metrics
 from dexrepro.measures import binomial_interval
 from dexrepro.plan import content_of
 from dexrepro.pool import COMPLETES, Failure, Pool
+from dexrepro.provenance import Provenance, provenance
 from dexrepro.runner import flat, summarise
 from dexrepro.storage import claimed, finite, locked, read_json, write_json, write_text
 

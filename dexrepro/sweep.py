@@ -14,7 +14,8 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 
-from dexrepro.config import InputError, config_dir, in_quotes
+from dexrepro.config import config_dir, in_quotes
+from dexrepro.errors import InputError
 
 PLUGINS = {  # by launcher: the package that has it, and the extra that brings it
     "ray": ("hydra_plugins.hydra_ray_launcher", "ray"),

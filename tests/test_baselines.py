@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from dexrepro import baselines, cli
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 from dexrepro.storage import read_json, write_json
 
 RESULTS = Path("results")

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT, Command
 
-from dexrepro import chapters, closure
+from dexrepro import chapters, closure, plan
 from dexrepro.case import live, run, targets
 from dexrepro.plan import code_digest, plan_chapter, presentation
 
@@ -127,6 +127,7 @@ def test_every_function_that_runs_is_in_the_hash(
     definition, job = chapters.load(chapter).experiment(experiment), plans[0].jobs[0]
     roots: list[closure.Name] = []
     monkeypatch.setattr(closure, "digest", lambda names: roots.extend(names) or "")
+    plan._code_digest.cache_clear()
     code_digest(definition, job.config)
     reached = closure._reached(roots)
     seen: set[closure.Name] = set()

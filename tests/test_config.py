@@ -8,20 +8,10 @@ import shlex
 import pytest
 
 from dexrepro import chapters
-from dexrepro.config import (
-    SETTINGS,
-    InputError,
-    Provenance,
-    _names,
-    commented_leaves,
-    compose_chapter,
-    experiment_cases,
-    inherited,
-    leaves_with_comments,
-    parse_provenance,
-    resolved_block,
-)
+from dexrepro.config import SETTINGS, _names, compose_chapter, experiment_cases, inherited, resolved_block
+from dexrepro.errors import InputError
 from dexrepro.plan import plan_chapter
+from dexrepro.provenance import Provenance, commented_leaves, leaves_with_comments, parse_provenance
 
 CHAPTERS = (*chapters.numbers(), chapters.OWN)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from dexrepro import cli
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 from dexrepro.plan import plan_chapter
 
 RESULT = Path("results/chapter90/decay")

@@ -11,7 +11,7 @@ import pytest
 
 import dexrepro
 from dexrepro.case import generator
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 from dexrepro.plan import own_digest, plan_chapter
 from dexrepro.runner import KEPT, complete, run_plans
 from dexrepro.storage import Result

@@ -16,7 +16,7 @@ from conftest import ROOT
 
 from dexrepro import study
 from dexrepro.claims import Claim, less
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 from dexrepro.pool import Pool
 from dexrepro.storage import read_json
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dexrepro.arrays import Array
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 from dexrepro.experiment import Config
 from dexrepro.primitives.recorded import Format, demonstrations
 

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from dexrepro.case import live, refuse_foreign, targets
-from dexrepro.config import InputError, compose_chapter, nearest
+from dexrepro.config import compose_chapter
+from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Experiment, Film, Recording
 from dexrepro.physics import rendering
 from dexrepro.physics.world import World

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from dexrepro.config import InputError, differences
+from dexrepro.checks import differences
+from dexrepro.errors import InputError
 from dexrepro.recordings import load_recording
 from dexrepro.report import style
 from dexrepro.report.damage import check_result

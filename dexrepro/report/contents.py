@@ -14,9 +14,10 @@ from PIL import Image
 
 from dexrepro import chapters
 from dexrepro.claims import Claim, Erratum
-from dexrepro.config import compose_chapter, experiment_cases, provenance, resolved_block
+from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.experiment import Experiment
 from dexrepro.plan import lacking, outdated, plan_chapter
+from dexrepro.provenance import provenance
 from dexrepro.report import equations, explorer, parameters, relations, sources, studies, verdicts, words
 from dexrepro.report.damage import check_result, is_safe, read_table
 from dexrepro.report.style import file_stem

@@ -14,7 +14,7 @@ import pandas as pd
 import yaml
 
 from dexrepro import chapters
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment
 from dexrepro.recordings import read_frame
 from dexrepro.storage import read_json, read_text, read_yaml

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment, Film
 from dexrepro.physics.rendering import Camera
 from dexrepro.recordings import read_frame

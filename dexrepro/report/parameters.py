@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from dexrepro.config import Provenance, origin_of, resolved_block
+from dexrepro.config import resolved_block
+from dexrepro.provenance import Provenance, origin_of
 from dexrepro.report import symbols
 
 

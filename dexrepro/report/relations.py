@@ -10,8 +10,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from dexrepro.checks import leaves
 from dexrepro.claims import Claim, Erratum
-from dexrepro.config import leaves
 
 
 def errata_of(claim: Claim, errata: Iterable[Erratum], composed: Mapping[str, Any]) -> list[Erratum]:

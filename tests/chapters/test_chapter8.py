@@ -58,7 +58,7 @@ def test_the_matched_gain_is_the_broad_networks_over_the_part_whose_errors_are_c
     stored = baselines.stored("8")["circle_tracking"].metrics
     broad = "friction_broad" if case.startswith("friction") else "broad"
     found, wanted = (stored[f"circle_tracking.{name}.early_gain"]["value"] for name in (case, broad))
-    assert found == pytest.approx(wanted, rel=0.01)
+    assert found == pytest.approx(wanted, rel=0.02)  # under friction the arm leaves the path a little
     assert CASES["circle_tracking"][case]["early"] == CASES["circle_tracking"][broad]["early"]
 
 
@@ -133,3 +133,14 @@ def test_a_variant_that_turns_a_comparison_around_is_marked():
     )
     assert list(table["verdict changes"]) == ["yes", "no"]
     assert list(table["quantity"]) == ["error [mm]", "error [mm]"]
+
+
+def test_all_laws_start_from_one_initial_gain_and_keep_one_step():
+    changed = experiment_cases(
+        compose_chapter("8", ["shared.initial_gain=[-20.0,1.0]", "unknown_object.step=0.0005"]), "unknown_object"
+    )
+    for name, case in changed.items():
+        gain = case["interaction"]["gain"]
+        assert gain.get("initial", [-20.0, 1.0]) == [-20.0, 1.0], name
+        assert gain.get("dt", 0.0005) == case["interaction"]["reference"]["dt"] == case["step"], name
+    assert changed["hold"]["interaction"]["gain"]["gain"] == [-20.0, 1.0]

@@ -12,7 +12,8 @@ from dexrepro.case import generator, live
 from dexrepro.chapters.chapter5 import crossing, letters
 from dexrepro.chapters.chapter5.obstacle_crossing import experiment as obstacle_crossing
 from dexrepro.chapters.chapter7 import skills
-from dexrepro.config import InputError, compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.errors import InputError
 
 
 def configured(chapter: str, experiment: str, case: str, *overrides: str) -> Any:

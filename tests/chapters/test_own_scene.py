@@ -11,8 +11,9 @@ import pytest
 from dexrepro.case import generator, live
 from dexrepro.chapters.own.scene import experiment as scene
 from dexrepro.cli import main, run_overrides
-from dexrepro.config import InputError, compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import Command
+from dexrepro.errors import InputError
 from dexrepro.experiment import Recording
 
 URDF = """

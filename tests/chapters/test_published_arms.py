@@ -13,7 +13,8 @@ import pytest
 from dexrepro.case import generator, live
 from dexrepro.chapters.chapter2.balloon_static import experiment as balloon
 from dexrepro.chapters.own.scene import experiment as scene
-from dexrepro.config import InputError, compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.errors import InputError
 
 DATA = Path(pybullet_data.getDataPath())
 AIRO = importlib.util.find_spec("airo_models")

@@ -16,7 +16,7 @@ import yaml
 from PIL import Image
 
 from dexrepro import chapters
-from dexrepro.config import InputError
+from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment, Film, Recording
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World

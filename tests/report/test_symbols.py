@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from dexrepro import chapters
-from dexrepro.config import compose_chapter, provenance
+from dexrepro.config import compose_chapter
+from dexrepro.provenance import provenance
 from dexrepro.report import parameters, symbols
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from dexrepro.arrays import Array, Rng
-from dexrepro.config import InputError
 from dexrepro.control.holding_line import HoldingLineRegulation
+from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Recording
 from dexrepro.physics.drive import HoldingDrive
 from dexrepro.physics.elements import Elastic

@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array
 from dexrepro.chapters.demonstrations import recorded
-from dexrepro.config import InputError, compose_chapter
+from dexrepro.config import compose_chapter
+from dexrepro.errors import InputError
 from dexrepro.experiment import Config
 from dexrepro.humans.muscle import Muscle, low_pass
 from dexrepro.humans.reaching import Obstacle, Reach, Reacher

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from dexrepro.arrays import Array
-from dexrepro.config import InputError
 from dexrepro.control.computed_torque import ComputedTorque
 from dexrepro.control.contract import KINDS, Command, Measured, build
 from dexrepro.control.holding_line import HoldingLineRegulation
 from dexrepro.control.motion import Motion, Path, rest
+from dexrepro.errors import InputError
 from dexrepro.experiment import Config
 from dexrepro.physics.drive import EndPointDrive, HoldingDrive, JointDrive, Limited, Posture
 from dexrepro.physics.plant import Sense

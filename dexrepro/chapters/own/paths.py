@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from dexrepro.config import InputError
 from dexrepro.control.motion import Path, circle, held, line
+from dexrepro.errors import InputError
 from dexrepro.experiment import Config
 from dexrepro.primitives.recorded import Format, read_path
 

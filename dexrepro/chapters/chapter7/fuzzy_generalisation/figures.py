@@ -44,6 +44,10 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         pictures.plan(plans[0, 1], path, **pictures.DIRECTIONS[name])
         pictures.side(sides[0, 1], path, task, **pictures.DIRECTIONS[name])
     sides[0, 1].set_ylim(0, 13)
+    sides[0, 1].annotate(
+        f"faint: {case.scene.low:g} and {case.scene.tall:g} cm high", (0.98, 0.95), xycoords="axes fraction",
+        fontsize=7, ha="right", va="top",
+    )  # fmt: skip
     pictures.name_directions(plans[0, 1])
     pictures.plan(plans[1, 0], skills.by_path(recording["between"]), color="#AAAAAA", linewidth=0.6)
     pictures.plan(plans[1, 0], recording["chosen"], **style.LINES["book"])

@@ -229,7 +229,7 @@ def _draw_gains(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
         f"{name} {metrics[case]['early_x']:.3f}/{metrics[case]['early_y']:.3f}"
         for case, name in (("broad", "BFNN"), ("fuzzy_matched", "FNN"), ("node", "one node"))
     )
-    style.title(figure, f"At equal adaptation gain, error x/y in mm: {errors}")
+    style.title(figure, f"Error x/y [mm] at equal gain: {errors}")
     return figure
 
 

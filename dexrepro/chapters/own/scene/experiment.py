@@ -11,8 +11,8 @@ import numpy as np
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.own.drivers import driver
 from dexrepro.chapters.own.paths import leader_path
-from dexrepro.config import InputError, nearest
 from dexrepro.control.motion import Path
+from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms
 from dexrepro.physics.elements import Elastic, Ends, Push, TipForce

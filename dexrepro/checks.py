@@ -1,0 +1,119 @@
+"""Checks of values: range, type, length and word, each refused in one sentence that names key, value and range."""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from dexrepro.errors import InputError
+
+
+def check_words(config: Mapping[str, Any], words: Mapping[str, tuple[str, ...]], where: str) -> None:
+    """Refuse a word that no branch of the code knows, naming those there are."""
+    for key, value in leaves(config):
+        if isinstance(value, str) and value not in words.get(key, (value,)):
+            raise InputError(f"{where}.{key} = {value} is not allowed: it must be one of {', '.join(words[key])}")
+
+
+_POSITIVE = re.compile(
+    r"(^|_)(mass|masses|lengths?|period|step|duration|inertia|samples|repetitions|substeps|time_constant|radius)$"
+)
+_NOT_NEGATIVE = re.compile(r"(^|_)(stiffness|damping|friction|noise|noise_std|delay|width|height|cutoff|tolerance)$")
+
+
+def check_values(config: Mapping[str, Any], where: str) -> None:
+    """Refuse values outside their physical range, in one sentence that names key, value and range."""
+    for key, value in leaves(config):
+        name = next((part for part in reversed(key.split(".")) if not part.isdigit()), key)
+        if not isinstance(value, int | float) or isinstance(value, bool):
+            continue
+        if not abs(value) < math.inf or abs(value) > sys.float_info.max:
+            raise InputError(f"{where}.{key} = {str(value)[:20]} is not allowed: it must be a finite number")
+        if _POSITIVE.search(name) and value <= 0:
+            raise InputError(f"{where}.{key} = {value} is not allowed: it must be greater than 0")
+        if _NOT_NEGATIVE.search(name) and value < 0:
+            raise InputError(f"{where}.{key} = {value} is not allowed: it must be 0 or greater")
+    values = dict(leaves(config))
+    steps = [v for k, v in values.items() if k.rpartition(".")[2] in ("control_period", "step") and is_number(v)]
+    for key, value in values.items():
+        if key.rpartition(".")[2] == "duration" and is_number(value) and steps and value < min(steps):
+            raise InputError(
+                f"{where}.{key} = {value} is not allowed: it must be at least one step of {min(steps):g} s"
+            )
+
+
+def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
+    """Refuse what is no number where the shipped configuration has a number, or numbers in lists.
+
+    null stays possible, for it turns many a thing off, but not for what is a quantity by its name.
+    """
+    for key, book in shipped.items():
+        if key not in config:
+            continue
+        value = config[key]
+        if isinstance(book, Mapping) and isinstance(value, Mapping):
+            check_types(value, book, f"{where}.{key}")
+        numbers = [is_number(item) for _, item in leaves(book)]
+        if not isinstance(book, Mapping) and numbers and all(numbers):
+            for place, item in leaves(value):
+                quantity = _POSITIVE.search(key) or _NOT_NEGATIVE.search(key)
+                if not is_number(item) and (item is not None or quantity):
+                    dotted = f"{where}.{key}.{place}".rstrip(".")
+                    shown = "null" if item is None else repr(item)
+                    raise InputError(f"{dotted} = {shown} is not allowed: it must be a number")
+
+
+_A_LINK = ("lengths", "masses", "inertias", "centres")  # one value a link each
+_VECTOR = re.compile(r"(^|_)(base|centre|place|offset|force|gravity|semi_axes|position|pose|start|goal)$")
+
+
+def check_lengths(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
+    """Refuse lists that do not have as many numbers as what they describe has: a link, an axis, a joint."""
+    links = {key: len(config[key]) for key in _A_LINK if isinstance(config.get(key), list)}
+    if len(set(links.values())) > 1:
+        shown = ", ".join(f"{key} has {count}" for key, count in links.items())
+        raise InputError(f"{where}: {shown} values: each must have one for every link")
+    for key, value in config.items():
+        book = shipped.get(key)
+        if isinstance(value, Mapping) and isinstance(book, Mapping):
+            check_lengths(value, book, f"{where}.{key}")
+        elif isinstance(value, list) and isinstance(book, list) and _VECTOR.search(key) and len(value) != len(book):
+            raise InputError(f"{where}.{key} = {value} is not allowed: it must have {len(book)} values")
+
+
+def is_whole(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def leaves(node: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """(dotted key, value) of everything in nested dictionaries and lists."""
+    items: Iterable[tuple[Any, Any]] = ()
+    if isinstance(node, Mapping):
+        items = node.items()
+    elif isinstance(node, list):
+        items = enumerate(node)
+    else:
+        yield prefix, node
+    for key, value in items:
+        yield from leaves(value, f"{prefix}.{key}" if prefix else str(key))
+
+
+def differences(config: Mapping[str, Any], shipped: Mapping[str, Any], prefix: str = "") -> list[str]:
+    """Keys in which two configurations differ, as ``key=value (book: value)``."""
+    found: list[str] = []
+    for key in dict.fromkeys([*config, *shipped]):
+        mine, theirs = config.get(key), shipped.get(key)
+        if isinstance(mine, Mapping) and isinstance(theirs, Mapping):
+            found += differences(mine, theirs, f"{prefix}{key}.")
+        elif key not in config:
+            found.append(f"{prefix}{key} left out")
+        elif mine != theirs:
+            found.append(f"{prefix}{key}={mine} (book: {theirs if key in shipped else 'absent'})")
+    return found

@@ -1,0 +1,21 @@
+"""What a user is told: one sentence that says what would be right."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class InputError(Exception):
+    """Something the user wrote cannot be used; the message is one sentence that says what would be right."""
+
+
+def nearest(name: str, valid: Iterable[str]) -> str:
+    """Half a sentence that helps with a misspelt name."""
+    valid = list(valid)
+    close = difflib.get_close_matches(name, valid, n=1, cutoff=0.5)
+    if not close and "." in name:  # the right key under another parent
+        close = [key for key in valid if key.rpartition(".")[2] == name.rpartition(".")[2]][:1]
+    if close:
+        return f"did you mean '{close[0]}'?"
+    return f"there are: {', '.join(valid[:30])}{', ...' if len(valid) > 30 else ''}"
