@@ -15,6 +15,7 @@ from dexrepro.chapters.chapter5 import letters
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.primitives import (
     DMP,
+    GaussianKernels,
     GrowingRegression,
     extend,
     extended_pseudo_inverse,
@@ -157,13 +158,13 @@ def _search(config: Config, rng: Rng) -> Recording:
     settings, scaling = config.search, letters.letter_scaling(config)
     shown = letters.demonstration(config.hand.letter, config, rng("demonstration"))
 
-    def fit(count: int) -> DMP:
+    def fit(kernels: GaussianKernels) -> DMP:
         options = {"rest": config.training.rest, "rcond": config.training.rcond}
-        kernels = letters.kernels(count, config, None)
         return DMP.fit(shown, kernels, letters.system(config), config.dmp.decay, scaling, **options)
 
-    base, plain = fit(config.kernels.count), fit(settings.kernels)
-    features = letters.features(base.features, config.features.added, config, rng("search"))
+    few, many = (letters.kernels(count, config, None) for count in (config.kernels.count, settings.kernels))
+    base, plain = fit(few), fit(many)
+    features = letters.features(few, config.features.added, config, rng("search"))
     grown = extend(base, features, shown, rest=config.training.rest, rcond=config.training.rcond)
     error, direct = (letters.squared_error(letters.rollout(p, config), shown.position) for p in (grown, plain))
     step, generator = config.dmp.duration / (config.dmp.samples - 1), rng("trials")
