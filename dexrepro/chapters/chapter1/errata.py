@@ -88,11 +88,21 @@ ERRATA = (
     Erratum(
         "E1.12",
         "(1.37), (1.43), (1.44)",
-        "error",
-        "Consequence of E1.10: with the printed definitions the cross terms of dV/dt do not cancel.",
+        "reading",
+        "With the printed definitions the cross terms of dV/dt do not cancel; part of E1.10, not an error of its own.",
         "As E1.10; (1.44) then stands as printed.",
         "lyapunov.printed=true",
         ("lyapunov.ideal.rising", "lyapunov.printed.rising"),
+    ),
+    Erratum(
+        "E1.20",
+        "after (1.44)",
+        "gap",
+        "That z~, e_z' and e_f converge does not follow from dV/dt <= 0 alone, which bounds them and makes their "
+        "squares integrable: it needs rates that stay bounded (Barbalat), so a bounded regressor and, by E1.17, a "
+        "stiffness that does not vary too fast. Of the weights nothing follows.",
+        "They converge where Z stays bounded; compare E2.04.",
+        evidence=("lyapunov.ideal.end", "force_tracking.c1_proposed.rmse_late", "force_tracking.c3_proposed.rmse_late"),
     ),
     Erratum(
         "E1.13",

@@ -1,6 +1,12 @@
 """Chapter 2: two arms hold and move a deformable object, one teleoperated, one on its own."""
 
 TITLE = "Single-leader dual-follower manipulation of a deformable object"
+FAIRNESS = (
+    "Rivals are compared with their printed parameters, on the same object and arms, over one window for all claims of "
+    "an experiment; on Baxter the force that every law is asked for fades in as fast as the proposed law reaches it. "
+    "What the estimation of movement does is judged against an integral of the force error; tuned comparisons give "
+    "every law forty candidates."
+)
 ORDER = (
     "planar_platform",
     "holding_line",

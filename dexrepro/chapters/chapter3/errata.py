@@ -158,7 +158,8 @@ GAPS = (
         "gap",
         "(3.16)-(3.18) and (3.29) with S = H(q) need a nominal model; the book writes hats and then equates them with "
         "the true values. What the robot's own gravity compensation contributes is not said.",
-        "A nominal model 10 % too light for gravity compensation, projector and observer; the exact one beside it.",
+        "A nominal model 10 % too light for gravity compensation and observer; the exact one beside it. The projector "
+        "does not feel an error that all masses and inertias share.",
         switch="external_push.model.mass_error=0",
         evidence=(f"{PUSH}.plus.observer_error", f"{PUSH}.exact_plus.observer_error"),
     ),

@@ -90,7 +90,8 @@ class State:
 class Reach:
     """From what the arm measures of itself and the camera's two points to joint torques; nothing else is known.
 
-    The nominal model, wrong by ``config.model.mass_error``, serves gravity compensation, projector and observer.
+    The nominal model, wrong by ``config.model.mass_error``, serves gravity compensation, projector and observer; a
+    factor that all masses and inertias share leaves the projector as it is.
     centre: P_R(t) as the camera sees it. applied: the torque that the motors report [N m].
     distance, observed, reference, force: of the last call, for recording.
     """

@@ -6,15 +6,6 @@ from dexrepro.claims import Claim
 
 CLAIMS = (
     Claim(
-        "C4.18a",
-        "4.8",
-        "Nodes far from a new orbit keep what they learned, because Gaussians are local.",
-        None,
-        where="Remark 4.1(4)",
-        not_testable="all orbits of the task lie within one width of the same nodes; that s_i and sin(s_i) vanish with "
-        "distance is their definition",
-    ),
-    Claim(
         "C4.27",
         "4.12",
         "The measured error curves of the real robot.",

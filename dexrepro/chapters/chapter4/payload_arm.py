@@ -30,7 +30,7 @@ EVERY = 2  # physics steps between recorded samples
 def motions(config: Config) -> Iterator[tuple[int, Sampled]]:
     """The runs of a case: phases I and II if it trains, then the nine trajectories from A, B, C to D, E, F."""
     task = config.task
-    if config.mode in ("reuse", "frozen"):
+    if config.mode != "zero":
         for number, ends in zip(TRAINING, (task.starts, task.ends)):
             points = [task.home, *(point for end in ends for point in (end, task.home))]
             yield number, via_points(points, [task.training_time] * 2 * len(ends), config.step)
@@ -93,7 +93,7 @@ def simulate(config: Config) -> Recording:
         if network is not None and number not in TRAINING:
             if knowledge is None:
                 knowledge = network.weights.copy(), network.basis.centres.copy()
-            network.reset(knowledge[0])
+            network.reset(None if config.mode == "nodes" else knowledge[0])
             network.basis.reset(knowledge[1])
             law.learning = config.mode != "frozen"
         pilot = Pilot(law, model, config.gravity_compensation, reference)

@@ -194,7 +194,8 @@ def settled(history: list[Array], per_node: int) -> dict[str, float]:
     """Whether weights (features, outputs) recorded over whole periods have converged, and how many are large.
 
     drift: change of the mean from the first to the second half; ripple: rms about the mean of the second half, both
-    over the norm of that mean. large, nodes: Gaussians whose weight of joint 1 exceeds a tenth of the largest, and all.
+    over the norm of that mean. large, very_large: Gaussians whose weight of joint 1 exceeds a tenth, a fifth of the
+    largest; nodes: all.
     """
     half = np.array([weights for weights in history if weights.shape == history[-1].shape])
     first, second = half[: len(half) // 2], half[len(half) // 2 :]
@@ -204,6 +205,7 @@ def settled(history: list[Array], per_node: int) -> dict[str, float]:
         "drift": float(np.linalg.norm(mean - first.mean(axis=0)) / size) if len(first) else 0.0,
         "ripple": float(np.sqrt(np.mean(np.sum((second - mean) ** 2, axis=(1, 2)))) / size),
         "large": large(mean[::per_node, 0]),
+        "very_large": large(mean[::per_node, 0], 0.2),
         "nodes": len(mean[::per_node]),
         "global": float(np.abs(mean[1::per_node]).max() / (np.abs(mean[::per_node]).max() or 1.0))
         if per_node == 3
@@ -211,10 +213,10 @@ def settled(history: list[Array], per_node: int) -> dict[str, float]:
     }
 
 
-def large(weights: Array) -> int:
-    """Number of weights above a tenth of the largest."""
+def large(weights: Array, share: float = 0.1) -> int:
+    """Number of weights above a share of the largest."""
     size = np.abs(weights)
-    return int(np.sum(size > 0.1 * size.max())) if size.max() > 0 else 0
+    return int(np.sum(size > share * size.max())) if size.max() > 0 else 0
 
 
 def picture(world: World, position: Array) -> Any:

@@ -56,6 +56,7 @@ def _network(recording: Recording, config: Config) -> Metrics:
         "weight_ripple": settled["ripple"],
         "large_weights": int(settled["large"]),
         "large_weight_share": settled["large"] / settled["nodes"],
+        "very_large_weight_share": settled["very_large"] / settled["nodes"],
     }
     if "weights" in recording.frames:
         trained = nodes[segment < ELLIPSE]
