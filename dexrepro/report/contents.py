@@ -65,7 +65,7 @@ class Contents:
         return {
             "number": self.number,
             "title": self.chapter.title,
-            "fairness": getattr(self.chapter, "fairness", ""),
+            "fairness": self.chapter.fairness,
             "experiments": self.experiments,
             "absent": self.absent,
             "claims": claims,

@@ -16,9 +16,10 @@ from typing import Any
 
 import numpy as np
 
+from dexrepro.arrays import Array
 from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment, Film
-from dexrepro.physics.rendering import Camera
+from dexrepro.physics.rendering import Camera, Solid
 from dexrepro.recordings import read_frame
 from dexrepro.report.animation import recorded_scene
 from dexrepro.report.damage import check_series
@@ -66,21 +67,15 @@ def scene(place: Path, target: Path, experiment: Experiment) -> dict[str, Any] |
     if not experiment.function("scene"):
         return None
     try:
-        config, recording, case = recorded_scene(place, experiment)
+        case, times, seen, poses = _motion(place, experiment)
     except InputError:  # nothing moves, or the configuration names code that is not ours
         return None
-    film = experiment.film
-    camera = film.camera if film else Camera()
-    with experiment.simulation.scene(config) as world:
-        if stage := experiment.function("stage"):
-            recording = stage(world, recording, config)
-        start, end = (film.span if film and film.case == case else None) or (recording.time[0], recording.time[-1])
-        shown = recording.time[recording.between(start, end)]
-        times = shown[np.unique(np.linspace(0, len(shown) - 1, FRAMES).round().astype(int))]
-        seen, poses = world.animate(recording, times)
+    except (AttributeError, LookupError, TypeError, ValueError):  # recorded under a configuration of other code
+        return None
     columns = {"time": times.astype(np.float32)}
     columns |= {str(i): column for i, column in enumerate(poses.reshape(len(times), -1).T.astype(np.float32))}
     text, samples, _ = _packed(columns)
+    camera = experiment.film.camera if experiment.film else Camera()
     entry = {
         "case": case, "samples": samples, "poses": text, "camera": asdict(camera),
         "solids": [{"kind": item.kind, "size": item.size, "colour": item.colour} for item in seen],
@@ -88,6 +83,20 @@ def scene(place: Path, target: Path, experiment: Experiment) -> dict[str, Any] |
     script = target / "scene.js"
     script.write_text(f"SCENES[{_quoted(target.name)}] = {json.dumps(entry)};\n", encoding="utf-8")
     return {"case": case, "script": f"files/{target.name}/{script.name}"}
+
+
+def _motion(place: Path, experiment: Experiment) -> tuple[str, Array, list[Solid], Array]:
+    """The case shown, instants (n,) [s], what is seen, and its poses (n, solids, 7)."""
+    config, recording, case = recorded_scene(place, experiment)
+    film = experiment.film
+    with experiment.simulation.scene(config) as world:
+        if stage := experiment.function("stage"):
+            recording = stage(world, recording, config)
+        start, end = (film.span if film and film.case == case else None) or (recording.time[0], recording.time[-1])
+        shown = recording.time[recording.between(start, end)]
+        times = shown[np.unique(np.linspace(0, len(shown) - 1, FRAMES).round().astype(int))]
+        seen, poses = world.animate(recording, times)
+    return case, times, seen, poses
 
 
 def unit(channel: str, film: Film | None = None) -> str:

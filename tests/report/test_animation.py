@@ -130,3 +130,11 @@ def test_a_scene_is_exported_as_the_engine_poses_it(swing: tuple[Path, Experimen
     angles = times * np.pi / 4
     middle = 0.25 * np.array([np.cos(angles), np.sin(angles), 0 * angles])
     np.testing.assert_allclose(poses[0, :3], middle, atol=1e-5)
+
+
+def test_a_result_that_the_present_code_cannot_stage_has_no_scene(
+    swing: tuple[Path, Experiment], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(swing[1].simulation, "scene", lambda config: config.another_key)
+    assert explorer.scene(swing[0], tmp_path, swing[1]) is None
+    assert not (tmp_path / "scene.js").exists()

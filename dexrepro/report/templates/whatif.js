@@ -46,7 +46,8 @@ function whatIf(place, study) {
     const draws = study.draws.filter((d) => d.margins[claim.value] != null && key in d.values)
       .sort((a, b) => a.values[key] - b.values[key]);
     const [low, high] = study.varied[key];
-    const scale = low > 0 && high / low >= 10 ? Math.log : (x) => x;
+    const wide = low > 0 && high / low >= 10 && draws.every((d) => d.values[key] > 0);
+    const scale = wide ? Math.log : (x) => x;
     const right = FRAME.width - FRAME.right;
     const bottom = FRAME.height - FRAME.bottom;
     const x = (value) => FRAME.left + ((scale(value) - scale(low)) / (scale(high) - scale(low))) * (right - FRAME.left);

@@ -13,7 +13,16 @@ from scipy.special import expit
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import letters
 from dexrepro.experiment import Config, Metrics, Recording
-from dexrepro.primitives import GrowingRegression, extended_pseudo_inverse, forcing_target, least_squares, phase
+from dexrepro.primitives import (
+    DMP,
+    GaussianKernels,
+    GrowingRegression,
+    extend,
+    extended_pseudo_inverse,
+    forcing_target,
+    least_squares,
+    phase,
+)
 
 KINDS = ("independent", "dependent", "mixed")
 
@@ -140,7 +149,43 @@ def _cost(config: Config, rng: Rng) -> Recording:
     return Recording(frames={"cost": pd.DataFrame(rows, columns=columns)}, steps=len(rows))
 
 
+def _search(config: Config, rng: Rng) -> Recording:
+    """A letter learned by an IDMP, and by trial: a cross-entropy search over the weights of a plain DMP.
+
+    The search is helped: its kernels are equally spaced, as many as it takes to be well conditioned, and it is told the
+    size of the best weights. A rollout is one product with the primitive's responses.
+    """
+    settings, scaling = config.search, letters.letter_scaling(config)
+    shown = letters.demonstration(config.hand.letter, config, rng("demonstration"))
+
+    def fit(kernels: GaussianKernels) -> DMP:
+        options = {"rest": config.training.rest, "rcond": config.training.rcond}
+        return DMP.fit(shown, kernels, letters.system(config), config.dmp.decay, scaling, **options)
+
+    few, many = (letters.kernels(count, config, None) for count in (config.kernels.count, settings.kernels))
+    base, plain = fit(few), fit(many)
+    features = letters.features(few, config.features.added, config, rng("search"))
+    grown = extend(base, features, shown, rest=config.training.rest, rcond=config.training.rcond)
+    error, direct = (letters.squared_error(letters.rollout(p, config), shown.position) for p in (grown, plain))
+    step, generator = config.dmp.duration / (config.dmp.samples - 1), rng("trials")
+    responses, amplitude = plain.propagator(step), scaling.amplitude(plain.start, plain.goal)
+    mean = np.zeros_like(plain.weights)
+    spread = np.full_like(mean, np.sqrt(np.mean(plain.weights**2)))
+    rows, rollouts = [], 0
+    for _ in range(settings.generations):
+        trials = mean + spread * generator.standard_normal((settings.population, *mean.shape))
+        paths = responses.position(trials * amplitude, np.tile(plain.start, (settings.population, 1)), plain.goal)
+        errors = np.mean(np.sum((paths - shown.position) ** 2, axis=-1), axis=-1)
+        best = trials[np.argsort(errors)[: settings.elite]]
+        mean, spread = best.mean(axis=0), best.std(axis=0)
+        rollouts += settings.population
+        rows.append((rollouts, errors.min(), error, direct))
+    columns = ["rollouts", "error", "grown", "plain"]
+    return Recording(frames={"search": pd.DataFrame(rows, columns=columns)}, steps=rollouts)
+
+
 PARTS = {
+    "search": _search,
     "mechanism": _mechanism,
     "activations": _activations,
     "lemma": _lemma,
@@ -161,7 +206,7 @@ def solve_operations(rows: int, columns: int) -> int:
 
 def measure(recording: Recording, config: Config) -> Metrics:
     ((part, frame),) = recording.frames.items()
-    return MEASURES[part](frame)
+    return _measure_search(frame, config) if part == "search" else MEASURES[part](frame)
 
 
 def _measure_lemma(frame: pd.DataFrame) -> Metrics:
@@ -209,6 +254,21 @@ def _measure_mechanism(frame: pd.DataFrame) -> Metrics:
         "printed_miss": float(np.abs(printed - s).max()),
         "share_low": float(share.min()),
         "share_high": float(share.max()),
+    }
+
+
+def _measure_search(frame: pd.DataFrame, config: Config) -> Metrics:
+    samples, count, added = config.dmp.samples, config.kernels.count, config.features.added
+    rows, last = round((1 + config.training.rest) * samples), frame.iloc[-1]
+    trial = samples * config.search.kernels * 2
+    return {
+        "error": float(frame.error.min()),
+        "error_idmp": float(last.grown),
+        "error_least_squares": float(last.plain),
+        "rollouts": int(last.rollouts),
+        "operations": int(last.rollouts) * trial,
+        "operations_trial": trial,
+        "operations_idmp": solve_operations(rows, count) + solve_operations(rows, count + added),
     }
 
 

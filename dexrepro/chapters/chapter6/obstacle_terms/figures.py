@@ -89,5 +89,5 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     best = max(metrics[case][f"bars_passed_{width}mm"] or 0 for case in ("centroid", "closest", "boundary"))
     tuned = max(metrics[case][f"bars_tuned_{width}mm"] or 0 for case in ("centroid", "closest", "boundary"))
     text = "Steering passes a point ahead at {:.2f} cm, beside it at {:.2f} cm".format(*near)
-    style.title(figure, f"{text}; of 5 bars of {width} mm {best}, tuned {tuned}")
+    style.title(figure, f"{text}; it passes {best} of 5 bars of half-width {width} mm, tuned {tuned}")
     return {"6.D": figure}

@@ -14,7 +14,7 @@ FIGURES = {
     "6.2d": Figure(
         "Path of the constrained primitive (law with the recorded acceleration) in its tube, distance to the reference "
         "and V^c for the readings of the law; above with a time constant of the segment's duration, below of 1 s. A "
-        "curve ends where its law is no longer defined. The book shows the path alone.",
+        "curve ends, with a cross, where its law is no longer defined. The book shows the path alone.",
         "Paths, distances to the reference and Lyapunov functions for the readings of the law and two time constants.",
     ),
 }
@@ -70,7 +70,12 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
             if case in recordings:
                 run = recordings[case]
                 text = {"H^2 weight": "feedforward, $H^2$", "projected": "feedforward, proj."}.get(label, label)
-                far.plot(run.time, run["distance"], label=text, **style.LINES[dashes[label]])
+                front = 4 if label in ("printed", "feedforward") else 2
+                far.plot(run.time, run["distance"], label=text, zorder=front, **style.LINES[dashes[label]])
+                held = np.flatnonzero(np.isfinite(run["distance"]))[-1]
+                if held < len(run.time) - 1:
+                    colour = style.LINES[dashes[label]]["color"]
+                    far.plot(run.time[held], run["distance"][held], "x", color=colour, markersize=6, zorder=5)
                 level.plot(run.time, np.maximum(run["lyapunov"], 1e-3), **style.LINES[dashes[label]])
         far.axhline(config.cases[shown].cdmp.margin, color="black", linewidth=0.6)
         far.set(ylabel="$\\|x^c-x\\|$ [cm]", ylim=(0, 0.6))
