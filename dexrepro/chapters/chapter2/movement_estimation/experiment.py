@@ -44,7 +44,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "velocity_slope": _slope(true_velocity[late], velocity[late]),
         "held": recording.simulated,
         "smallest_stiffness": float(stiffness.min()),
-        "replay_difference": _replay(recording, config),
+        "replay_difference": _replay(recording, config) if recording.status == "finished" else None,
     }
 
 
