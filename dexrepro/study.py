@@ -336,9 +336,21 @@ def _boundary(parameter: str | None, pairs: Sequence[tuple[Any, Mapping[str, flo
 
 
 def stored(results: Path) -> list[dict[str, Any]]:
-    """Every study there is: of those shipped and those made here, the one of more samples; ours where equal."""
+    """Every study there is: of those shipped and those made here, the one of more samples; ours where equal.
+
+    A study of a claim that says something else today, or is gone, says nothing of it: its row is left out.
+    """
     paths = [*(baseline_dir() / "study").glob("*.json"), *_folder(results).glob("*.json")]
-    return [_summary(path) for _, path in sorted({path.name: path for path in sorted(paths, key=_size)}.items())]
+    found = [_summary(path) for _, path in sorted({path.name: path for path in sorted(paths, key=_size)}.items())]
+    for item in list(found):
+        known = chapters.load(item["chapter"]).claims if item["chapter"] in chapters.numbers() else ()
+        today = {claim.id: str(claim.predicate) for claim in known}
+        rows = item["claims"].items()
+        kept = {key: row for key, row in rows if key in today and row.get("predicate") in (None, today[key])}
+        if item["claims"] and not kept:
+            found.remove(item)
+        item["claims"] = kept
+    return found
 
 
 def _summary(path: Path) -> dict[str, Any]:
@@ -355,17 +367,9 @@ def _summary(path: Path) -> dict[str, Any]:
 
 
 def robustness_of(chapter: str, results: Path = Path("results")) -> dict[str, str]:
-    """What the studies show each claim of a chapter to be: "robust", "fragile" or "open".
-
-    A study of a claim that says something else today says nothing of it.
-    """
-    today = {claim.id: str(claim.predicate) for claim in chapters.load(chapter).claims}
-    found: dict[str, str] = {}
-    for item in stored(results):
-        for key, row in item["claims"].items() if item["chapter"] == chapter else ():
-            if row.get("predicate", today.get(key)) == today.get(key):
-                found[key] = robustness(row["holds"], row["samples"])
-    return found
+    """What the studies show each claim of a chapter to be: "robust", "fragile" or "open"."""
+    rows = [row for item in stored(results) if item["chapter"] == chapter for row in item["claims"].items()]
+    return {key: robustness(row["holds"], row["samples"]) for key, row in rows}
 
 
 PERMUTATIONS = 999

@@ -7,22 +7,19 @@ import pytest
 from dexrepro import baselines, chapters, study
 from dexrepro.claims import BY_CONSTRUCTION, NOT_EVALUATED, Claim, Predicate, less, robustness
 
-TESTED: tuple[str, ...] = ("1", "2", "3", "4", "5", "6", "7", "8")
-"""Chapters whose claims all have their control, or the reason why none can exist."""
-
 
 def stored_metrics(number: str) -> dict[str, float | None]:
     stored = baselines.stored(number).values()
     return {name: entry["value"] for baseline in stored for name, entry in baseline.metrics.items()}
 
 
-@pytest.mark.parametrize("number", TESTED)
+@pytest.mark.parametrize("number", chapters.numbers())
 def test_every_claim_of_the_book_has_a_control_or_the_reason_why_none_can_exist(number: str) -> None:
     claims = [claim for claim in chapters.load(number).claims if claim.source == "book" and claim.predicate]
     assert not [claim.id for claim in claims if not (claim.control or claim.no_control or claim.by_construction)]
 
 
-@pytest.mark.parametrize("number", TESTED)
+@pytest.mark.parametrize("number", chapters.numbers())
 def test_every_predicate_has_been_seen_to_fail(number: str) -> None:
     """In a stored control, printed form, reading, other case or study sample; those that never did say why."""
     metrics = stored_metrics(number)
