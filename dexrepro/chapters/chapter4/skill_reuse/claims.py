@@ -37,7 +37,9 @@ CLAIMS = (
         _below("rmse_mm", "broad20", *FIXED),
         control=_below("rmse_mm", "constant", *FIXED),
         credits="the broad network",
-        readings={ONE_GAIN: _below("rmse_mm", "broad20", "common_rbf2", "common_rbf10")},
+        readings={
+            f"{ONE_GAIN}, by 1 % or more": _below("rmse_mm", "broad20", "common_rbf2", "common_rbf10", factor=0.99)
+        },
         where="4.5",
         note="Over the whole run, 'overall' in the book. With one gain for all methods the fixed network of width 10 "
         "has {skill_reuse.common_rbf10.effective_gain:.0f} instead of {skill_reuse.broad20.effective_gain:.0f} of "
