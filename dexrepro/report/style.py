@@ -100,12 +100,12 @@ def title(figure: Figure, text: str) -> None:
 
 def at_most(value: float, digits: int) -> str:
     """A bound that ``value`` keeps, rounded up to a number of decimals: for "at most" and "within"."""
-    return f"{math.ceil(value * 10**digits - 1e-9) / 10**digits:.{digits}f}"
+    return "?" if math.isnan(value) else f"{math.ceil(value * 10**digits - 1e-9) / 10**digits:.{digits}f}"
 
 
 def at_least(value: float, digits: int) -> str:
     """A bound that ``value`` exceeds, rounded down to a number of decimals."""
-    return f"{math.floor(value * 10**digits + 1e-9) / 10**digits:.{digits}f}"
+    return "?" if math.isnan(value) else f"{math.floor(value * 10**digits + 1e-9) / 10**digits:.{digits}f}"
 
 
 def panel(axes: Axes, letter: str, text: str = "") -> None:

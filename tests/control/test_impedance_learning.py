@@ -111,8 +111,12 @@ def test_at_the_balance_the_wanted_force_is_the_one_felt_exploration_included():
             self.target = target
             return super().acceleration(state, force, desired, target)
 
-    gain, reference, surface, force = ConstantGain([-5.0, 0.3]), Target(rate=20.0, dt=DT), 0.02, -0.4
-    gain.exploration = 0.07
+    class Exploring(ConstantGain):
+        def reset(self):
+            super().reset()
+            self.exploration = 0.07
+
+    gain, reference, surface, force = Exploring([-5.0, 0.3]), Target(rate=20.0, dt=DT), 0.02, -0.4
     law = InteractionLaw(gain, reference, COST.output, 1, contact_force=1e-6, recovery=5.0, origin=surface)
     law(at(0.05, force), Motion(0.06, 0.0, 0.0))
     share = (0.06 - surface) / COST.output
