@@ -201,7 +201,8 @@ def _differs(
         own[key] += ", without effect: every case sets its own"
     # A shared value that only a case refers to is named where that case has it.
     beside = [text for key, text in reached.items() if key and key not in own]
-    return [*own.values(), *listed, *beside, *differences({"seed": config["seed"]}, {"seed": shipped["seed"]})]
+    seed = differences({"seed": config["seed"]}, {"seed": shipped["seed"]})
+    return [*own.values(), *seed, *listed, *beside]
 
 
 def _key(difference: str) -> str:
