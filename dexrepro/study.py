@@ -210,7 +210,7 @@ def run(
         with locked(_folder(results)):  # who ends last sees every sample
             entries = list(_kept(chapter, experiment, results).values())
             found = summary(chapter, experiment, entries)
-            if len(entries) >= _size(target):  # fewer where the hours are over
+            if len(entries) >= _held(target):  # fewer where the hours are over
                 _write_lines(_lines(target), entries)
                 write_json(target, found)
         if failed or time.time() > deadline or not any(row["word"] == OPEN for row in found["claims"].values()):
@@ -224,7 +224,7 @@ def run(
 
 
 def _refuse_fewer(chapter: str, experiment: str, samples: int, results: Path, target: Path) -> None:
-    before, there = _size(target), len(_kept(chapter, experiment, results))
+    before, there = _held(target), len(_kept(chapter, experiment, results))
     if before > max(there, samples):
         raise InputError(
             f"samples = {samples} is not allowed: {target} holds {before} samples of another configuration, which "
@@ -267,6 +267,11 @@ def _folder(results: Path) -> Path:
 
 def _size(summary: Path) -> int:
     return int(_summary(summary)["samples"]) if summary.exists() else 0
+
+
+def _held(summary: Path) -> int:
+    """Samples that a summary must not lose: those beside it. One without its samples cannot go on and is replaced."""
+    return _size(summary) if _lines(summary).exists() else 0
 
 
 def _lines(summary: Path) -> Path:
