@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 import os
+import re
 import signal
 import sys
 from collections.abc import Callable, Sequence
@@ -68,7 +69,11 @@ def _dispatch(arguments: list[str]) -> int:
         from dexrepro.completion import complete
 
         complete(parser)
-    options = parser.parse_args(arguments)
+    options, words = parser.parse_known_args(arguments)
+    if words and not (hasattr(options, "selection") and all(re.match(r"[\w.]+=", word) for word in words)):
+        parser.error(f"unrecognized arguments: {' '.join(words)}")
+    if words:  # key=value behind an option
+        options.selection += words
     return int(options.function(options))
 
 

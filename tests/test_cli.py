@@ -61,6 +61,8 @@ def test_a_command_of_the_manual_works(shell: Shell, command: str, expected: str
         ("dexrepro run chapter=2 workers=0", 2, "workers = 0 is not allowed"),
         ("dexrepro check chapter=2 workers=all", 2, "workers = all is not allowed"),
         ("dexrepro check chapter=2", 2, "run: dexrepro run chapter=2"),
+        ("dexrepro check chapter=2 --json only=nosuch", 2, "unknown experiment 'nosuch'"),
+        ("dexrepro check chapter=2 --jsn only=holding_line", 2, "unrecognized arguments"),
         ("dexrepro diff here there", 2, "here holds no result"),
         ("dexrepro draw case=s1", 2, "unknown case 's1'"),
     ],
