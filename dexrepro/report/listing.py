@@ -39,7 +39,7 @@ def _chapter(number: str) -> dict[str, Any]:
                 "source": claim.source,
                 "where": claim.where,
                 "control": str(claim.control) if claim.control else None,
-                "no_control": claim.no_control,
+                "no_control": claim.no_control or claim.by_construction or claim.not_testable,
                 "credits": claim.credits,
                 "by_construction": claim.by_construction,
                 "robustness": words.get(claim.id, ""),
