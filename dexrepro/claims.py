@@ -232,7 +232,7 @@ class Claim:
             searched=self.searched,
             by_construction=self.by_construction,
             reason=self.not_testable,
-            note=_filled(self.note, metrics),
+            note=filled(self.note, metrics),
         )
 
     def _verdict(
@@ -260,7 +260,7 @@ class Claim:
         return AFTER_CORRECTION if printed is not None and not printed > 0 else REPRODUCED
 
 
-def _filled(text: str, metrics: Metrics) -> str:
+def filled(text: str, metrics: Metrics) -> str:
     """A text whose ``{experiment.case.metric:format}`` are replaced by the run's numbers ("?" where absent)."""
 
     def number(match: re.Match[str]) -> str:
@@ -309,6 +309,7 @@ class Erratum:
 
     kind: "error" (inconsistent with the book's own equations), "gap" (something needed is not printed), "reading"
         (defensible as printed under the reading named) or "slip" (typesetting, possibly text extraction).
+    summary, correction: may hold numbers of a run, as a claim's note does.
     switch: the exact override that selects the printed form ("" where it does not run).
     evidence: names of the metrics that show the effect.
     """

@@ -13,7 +13,7 @@ from typing import Any
 from PIL import Image
 
 from dexrepro import chapters
-from dexrepro.claims import Claim, Erratum
+from dexrepro.claims import Claim, Erratum, filled
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.experiment import Experiment
 from dexrepro.plan import lacking, outdated, plan_chapter
@@ -172,7 +172,9 @@ class Contents:
     def _erratum(self, item: Erratum) -> dict[str, Any]:
         evidence = [(name, self.metrics.get(name)) for name in item.evidence]
         return {
-            **vars(item), "evidence": evidence, "equations": equations.numbers(item.equation),
+            **vars(item), "evidence": evidence,
+            "summary": filled(item.summary, self.metrics), "correction": filled(item.correction, self.metrics),
+            "equations": equations.numbers(item.equation),
             "line": self._line(item.id), "chapter": self.number,
         }  # fmt: skip
 
@@ -225,8 +227,8 @@ class Contents:
         return {
             "id": identifier,
             "chapter": self.number,
-            "caption": caption,
-            "alt": alt or caption,
+            "caption": filled(caption, self.metrics),
+            "alt": filled(alt or caption, self.metrics),
             "svg": f"files/{target.name}/{stem}.svg",
             "png": f"files/{target.name}/{stem}.png",
             "thumbnail": f"files/{target.name}/{stem}.webp",
