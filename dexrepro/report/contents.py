@@ -154,12 +154,14 @@ class Contents:
         text = " ".join([entry["statement"], entry["note"], entry["where"], *(item.equation for item in touching)])
         names = [name.split(".") for name in entry["values"]]
         shown = {**entry, "study": row, "robustness": verdicts.robustness(row), "chapter": self.number}
+        beside = filled(claim.beside, self.metrics) if claim else ""
         return {
             **shown,
             "strength": verdicts.strength(shown),
             "severe": verdicts.is_severe(shown),
             "noticed": verdicts.noticed(shown),
             "often": verdicts.often(shown),
+            "beside": "" if "?" in beside else beside,  # its numbers are not there
             "where": re.sub(r"^(?=\d)", "Sect. ", entry["where"]),
             "errata": touching,
             "equations": equations.numbers(text),
