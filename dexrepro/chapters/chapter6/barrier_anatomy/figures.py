@@ -58,8 +58,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         for axes, name, scale in ((c, "margin", 1), (d, "step", 1e3)):
             frame = frames[name]
             kept = frame.defined.astype(bool)
-            share = (frame.e_max / (frame.margin if name == "margin" else config.cases[case].cdmp.margin)).where(kept)
-            axes.plot(scale * frame[name], share, marker=".", label=WORDS[case], **look)
+            used = (frame.e_max / (frame.margin if name == "margin" else config.cases[case].cdmp.margin)).where(kept)
+            axes.plot(scale * frame[name], used, marker=".", label=WORDS[case], **look)
             height = np.full(int((~kept).sum()), 1.1 + 0.08 * row)
             axes.plot(scale * frame[name][~kept], height, "x", color=look["color"], markersize=4)
             axes.plot(scale * frame[name], np.full(len(frame), 1.1 + 0.08 * row), linewidth=0.5, **look)
