@@ -311,6 +311,7 @@ class Erratum:
 
     kind: "error" (inconsistent with the book's own equations), "gap" (something needed is not printed), "reading"
         (defensible as printed under the reading named) or "slip" (typesetting, possibly text extraction).
+    summary, correction: may hold numbers of a run, as a claim's note does.
     switch: the exact override that selects the printed form ("" where it does not run).
     evidence: names of the metrics that show the effect.
     """

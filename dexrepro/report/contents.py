@@ -174,7 +174,9 @@ class Contents:
     def _erratum(self, item: Erratum) -> dict[str, Any]:
         evidence = [(name, self.metrics.get(name)) for name in item.evidence]
         return {
-            **vars(item), "evidence": evidence, "equations": equations.numbers(item.equation),
+            **vars(item), "evidence": evidence,
+            "summary": filled(item.summary, self.metrics), "correction": filled(item.correction, self.metrics),
+            "equations": equations.numbers(item.equation),
             "line": self._line(item.id), "chapter": self.number,
         }  # fmt: skip
 
@@ -227,8 +229,8 @@ class Contents:
         return {
             "id": identifier,
             "chapter": self.number,
-            "caption": caption,
-            "alt": alt or caption,
+            "caption": filled(caption, self.metrics),
+            "alt": filled(alt or caption, self.metrics),
             "svg": f"files/{target.name}/{stem}.svg",
             "png": f"files/{target.name}/{stem}.png",
             "thumbnail": f"files/{target.name}/{stem}.webp",

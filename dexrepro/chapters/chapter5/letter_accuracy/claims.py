@@ -97,8 +97,8 @@ CLAIMS = (
         note="With 60 added features it beats the DMP+ in {letter_accuracy.default.n20.idmp60.beats_dmp_plus:.0%} of "
         "the draws, with 30 in {letter_accuracy.default.n20.idmp30.beats_dmp_plus:.0%}, with 10 in "
         "{letter_accuracy.default.n20.idmp10.beats_dmp_plus:.0%}; a plain DMP with as many weights as the largest IDMP "
-        "in {letter_accuracy.default.n20.dmp_equal.beats_dmp_plus:.0%}. Narrow kernels, steep features or a "
-        "regularised fit reverse the order as well (T5.S).",
+        "in {letter_accuracy.default.n20.dmp_equal.beats_dmp_plus:.0%}. More choices that turn the order "
+        "stand in T5.S.",
     ),
     Claim(
         "C5.06",

@@ -56,8 +56,7 @@ CLAIMS = (
         },
         where="5.5.2",
         note="At every step in every draw with 25 kernels, whose number the book does not print; with 20, k does so in "
-        "{style_transformation.n20.k.leaves_base:.0%} of the draws, and in most samples of the study some letter comes "
-        "nearer to a once.",
+        "{style_transformation.n20.k.leaves_base:.0%} of the draws.",
     ),
     Claim(
         "C5.13",
