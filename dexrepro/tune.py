@@ -233,7 +233,8 @@ def run(
 
         measure([None])
         for points in _rounds(search, budget - 1, rows):
-            measure(list(points))
+            if len(points):
+                measure(list(points))
     return _found(search, rows), path
 
 
@@ -246,9 +247,11 @@ def _rounds(search: Search, budget: int, rows: Sequence[Mapping[str, Any]]) -> I
     yield np.array(list(islice(unit, budget - sum(sizes))))
     for number, size in enumerate(sizes, 1):
         tried = [row for row in rows if row["point"] is not None and row["value"] is not None]
+        points = np.array(list(islice(unit, size)))
         if size and tried:
             best = np.array(min(tried, key=lambda row: search.sign * row["value"])["point"])
-            yield np.clip(best + SHRINK**number * (np.array(list(islice(unit, size))) - 0.5), 0, 1)
+            points = np.clip(best + SHRINK**number * (points - 0.5), 0, 1)
+        yield points
 
 
 def _row(search: Search, content: str, chosen: Mapping[str, float], result: Any) -> dict[str, Any]:
