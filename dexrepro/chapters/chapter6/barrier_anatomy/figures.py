@@ -33,18 +33,17 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     a.set(ylim=(0, 1.75), yticks=(0, 0.5, 1))
     a.legend(fontsize=6.5, ncols=2, loc="upper center", columnspacing=1)
     lines = {
-        "consistent": "extra1",
-        "printed": "printed",
-        "feedforward": "book",
-        "tau1_printed": "extra2",
-        "tau1_feedforward": "extra3",
+        "consistent": ("consistent", "extra1"),
+        "printed": ("printed", "printed"),
+        "feedforward": ("feedforward", "book"),
+        "tau1_printed": (r"$\tau$ = 1 s, printed", "extra2"),
+        "tau1_feedforward": (r"$\tau$ = 1 s, feedforward", "extra3"),
     }
-    for case, line in lines.items():
+    for case, (label, line) in lines.items():
         if case not in recordings:
             continue
         frames = recordings[case].frames
-        label = case.replace("tau1_", r"$\tau$ = 1 s, ")
-        if case != "consistent":
+        if config.cases[case].cdmp.law != "consistent":
             b.plot(frames["k2"]["k2"], frames["k2"].e_max, label=label, **style.LINES[line])
         for axes, name, x in ((c, "margin", "margin"), (d, "step", "step")):
             frame = frames[name]
