@@ -105,10 +105,10 @@ def _inherited(node: Any, composed: Mapping[str, Any], within: tuple[str, ...]) 
             raise InputError(
                 f"{INHERITS}: {this} is not allowed: it must name a block that does not inherit from this one"
             )
-        base = {key: value for key, value in base.items() if not taken or key in (*taken, INHERITS)}
-        found = _inherited(base, composed, (*within, this))
+        part_of = {key: value for key, value in base.items() if not taken or key in (*taken, INHERITS)}
+        found = _inherited(part_of, composed, (*within, this))
         if missing := [key for key in taken if key not in found]:
-            raise InputError(f"{INHERITS}: {parent} has no '{missing[0]}': {nearest(missing[0], found)}")
+            raise InputError(f"{INHERITS}: {parent} has no '{missing[0]}': {nearest(missing[0], {**base, **found})}")
         result = _laid_over(result, _forwarded({key: found[key] for key in taken or found}, parent))
     own = {key: _inherited(value, composed, within) for key, value in node.items() if key != INHERITS}
     return _laid_over(result, own)
