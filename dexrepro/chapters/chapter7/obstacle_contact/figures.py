@@ -66,10 +66,11 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
+    names = {str(config.cases[case].law.get("impedance")): text for case, text in NAMES.items() if case in config.cases}
     rows = [
         {
-            "impedance": NAMES.get(case.removesuffix("_plain"), case),
-            "estimation": not case.endswith("_plain"),
+            "impedance": names.get(str(config.cases[case].law.get("impedance")), case),
+            "estimation": config.cases[case].law.get("estimation", True),
             "peak contact force [N]": values["contact_peak"],
             "contact impulse [N s]": values["contact_impulse"],
             "push before [mm]": values["before_push"],

@@ -66,7 +66,7 @@ def tabulate(recordings: Recordings, metrics: Mapping[str, Any], config: Config)
     rows = []
     for case, values in metrics.items():
         for method, text in METHODS.items():
-            if case != "main" and method != "fuzzy":
+            if config.cases[case].fuzzy != config.fuzzy and method != "fuzzy":
                 continue  # the rivals do not depend on the fuzzy sets
             rows.append(
                 {

@@ -218,7 +218,7 @@ def _draw_gains(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
             )  # fmt: skip
         for case, name in names.items():
             if case in metrics:
-                below = case.startswith("fuzzy")
+                below = config.cases[case].networks.kind == "fuzzy"
                 place = (metrics[case]["early_gain"], metrics[case][f"early_{letter}"])
                 side: Any = {"xytext": (-5, -5), "ha": "right", "va": "top"} if below else {"xytext": (4, 4)}
                 axes.annotate(name, place, textcoords="offset points", fontsize=6.5, **side)

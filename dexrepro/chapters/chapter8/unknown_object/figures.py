@@ -15,6 +15,8 @@ from dexrepro.control.interaction_optimum import InteractionCost, InteractionMod
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
 from dexrepro.report.tables import by_case
 
+from .experiment import objects
+
 FIGURES = {
     "8.2": Figure(
         "The soft change of gain, Eq. (8.11), of both components from K_0 to K* in shares of the learned gain, and "
@@ -211,8 +213,9 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
 def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     from dexrepro.report import style
 
-    cases = [case for case in recordings if case == "soft" or case.startswith("object")]
-    found = sorted((config.cases[case].object.stiffness, metrics[case]) for case in cases)
+    found = sorted(
+        (config.cases[name].object.stiffness, metrics[name]) for name in objects(config) if name in recordings
+    )
     stiffness = np.array([item[0] for item in found], float)
     curve = np.geomspace(4, 1250, 60)
     damping = config.object.damping
