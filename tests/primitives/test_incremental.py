@@ -156,3 +156,13 @@ def test_lemma_with_the_corrected_start_fits_and_the_printed_start_leads_away():
 def test_features_of_another_skill_are_refused():
     with pytest.raises(ValueError, match="extend those of the old skill"):
         extend(base_skill(), drawn(base=GaussianKernels.spaced(12, 4.0)), bump(2.0, 0.5))
+
+
+def test_a_nearly_dependent_column_is_still_orthogonal_to_the_old_ones():
+    """The first projection leaves rounding of the size of the column, a millionth of which is left."""
+    rng = np.random.default_rng(3)
+    matrix = rng.normal(size=(50, 5))
+    column = matrix @ rng.normal(size=(5, 1)) + 1e-7 * rng.normal(size=(50, 1))
+    found = extended_pseudo_inverse(matrix, np.linalg.pinv(matrix), column)
+    assert np.abs(found[5:] @ matrix).max() < 1e-7
+    assert found[5:] @ column == pytest.approx(1.0, abs=1e-6)

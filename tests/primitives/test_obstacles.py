@@ -57,3 +57,15 @@ def test_a_polygon_a_run_is_each_run_s_own():
     points = np.array([[1.0, 1.5], [1.0, 1.5]])
     assert both.distance(points) == pytest.approx([-0.5, 9.0])
     assert both.closest(points) == pytest.approx(np.array([[1, 2], [10, 1.5]]))
+
+
+def test_inside_is_told_behind_any_number_of_edges_and_of_any_slope():
+    tops = [[5, 2], [4, 2], [4, 1], [3, 1], [3, 2], [2, 2], [2, 1], [1, 1], [1, 2], [0, 2]]
+    comb = Polygon(np.array([[0.0, 0.0], [5.0, 0.0], *tops]))
+    points = [(x + 0.5, 1.5) for x in range(-1, 6)]
+    assert comb.contains(points).tolist() == [False, True, False, True, False, True, False]
+    corners = np.array([[1.0, -2.0], [6.0, 0.5], [2.5, 4.0]])
+    where = np.random.default_rng(2).uniform(-3, 7, (300, 2))
+    sides = [np.linalg.det(np.stack([np.broadcast_to(b - a, where.shape), where - a], axis=-1))
+             for a, b in zip(corners, np.roll(corners, -1, axis=0))]  # fmt: skip
+    assert np.array_equal(Polygon(corners).contains(where), np.all(np.array(sides) > 0, axis=0))
