@@ -111,3 +111,10 @@ def test_a_demonstration_knows_its_ends_and_can_be_held_at_its_goal():
     for wrong in (path[:, 0], path[1:]):
         with pytest.raises(ValueError, match="do not go with 41 instants"):
             Demonstration.of(time, wrong)
+
+
+def test_truncated_features_share_out_the_phase_even_where_every_kernel_underflows():
+    far = TruncatedKernels(GaussianKernels(np.array([0.5, 0.4]), np.array([5e4, 5e4])), reach=1e3)
+    features = far.features(np.array([0.9, 0.45, 0.05]))
+    assert features[:, 2:].sum(axis=1) == pytest.approx(1.0)
+    assert features == pytest.approx(np.array([[0.9, 0, 1, 0], [0.225, 0.225, 0.5, 0.5], [0, 0.05, 0, 1]]))

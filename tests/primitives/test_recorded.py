@@ -157,6 +157,8 @@ def rested(pause: float) -> list[float]:
         (50.0 * np.arange(60), "line 3 comes 50 s after the line before, and all take 2950 s; set time_unit=ms if"),
         (1.7e18 + 5e7 * np.arange(60), "set time_unit=ns if that is the unit of its stamps, time_unit=s if it is"),
         (1.7e15 + 5e4 * np.arange(60), "set time_unit=us if that"),
+        (1200.0 * np.arange(60), "set time_unit=us if that"),
+        (900.0 * np.arange(60), "set time_unit=ms if that"),
         (np.arange(100), "line 3 comes 1 s after the line before, and all take 99 s; set time_unit=ms"),
         (1e-6 * np.arange(60), "it lasts 5.9e-05 s from line 2 to 61; time_unit= must be another"),
     ],
