@@ -8,19 +8,20 @@ from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Protocol, cast
 
-import numpy as np
-
-from dexrepro.arrays import Array, Image
-from dexrepro.robots.arm import Arm, Shape
-
 if TYPE_CHECKING:
+    import numpy as np
+
+    from dexrepro.arrays import Array, Image
     from dexrepro.physics.model import RigidBodyModel
     from dexrepro.physics.plant import RigidBody, SimulatedArm, Touch
     from dexrepro.physics.rendering import Camera, Overhead, Solid
     from dexrepro.physics.sensor import Sensor
+    from dexrepro.robots.arm import Arm, Shape
 
-ENGINES = ("pybullet", "mujoco")
-"""The words for them; each names the package that has to be installed and the module in :mod:`.engines`."""
+ENGINES = {"pybullet": "PyBullet", "mujoco": "MuJoCo"}
+"""Their names by the word for each, which is that of its package and of its module in :mod:`.engines`."""
+
+REFERENCE = "pybullet"  # the engine of the stored baselines
 
 _chosen: list[str] = []
 
@@ -105,16 +106,17 @@ def is_installed(name: str) -> bool:
     return importlib.util.find_spec(name) is not None
 
 
-def name() -> str:
-    """The engine of this process: the one told to :func:`use`, else PyBullet, else what is installed."""
-    return _chosen[0] if _chosen else next(filter(is_installed, ENGINES), ENGINES[0])
+def default() -> str:
+    """PyBullet where it is installed, else what is."""
+    return next(filter(is_installed, ENGINES), REFERENCE)
 
 
-def use(name: str) -> None:
+def use(word: str) -> None:
     """Choose the engine of the scenes and models made from now on."""
-    _chosen[:] = [name]
+    _chosen[:] = [word]
 
 
 def engine() -> Engine:
-    """The engine's module."""
-    return cast(Engine, importlib.import_module(f"dexrepro.physics.engines.{name()}"))
+    """The module of the engine last chosen, else of the default."""
+    word = _chosen[0] if _chosen else default()
+    return cast(Engine, importlib.import_module(f"dexrepro.physics.engines.{word}"))

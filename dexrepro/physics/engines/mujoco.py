@@ -13,6 +13,7 @@ import contextlib
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, cast
 
 import mujoco
 import numpy as np
@@ -217,16 +218,15 @@ class MujocoScene:
         self.geometries: list[Geometry] = []
         self.drags: dict[int, Array] = {}
         self._pushed, self._touches = False, list[tuple[tuple[Geometry, Geometry], Vector, Array]]()
-        self._gui, self._viewer = gui, None
+        self._gui, self._viewer = gui, cast(Any, None)
         self._names = (f"n{k}" for k in itertools.count())
-        self.model, self.data = spec.compile(), None
+        self._bound = 0
         self.compile()
 
     def compile(self) -> None:
         """Make the model of everything that is there, in the state it had."""
-        for item in self.items if self.data is not None else ():
-            if hasattr(item, "index") or hasattr(item, "bodies"):
-                item.keep()
+        for item in self.items[: self._bound]:
+            item.keep()
         try:
             self.model = self.spec.compile()
         except ValueError as error:
@@ -234,6 +234,7 @@ class MujocoScene:
         self.data = mujoco.MjData(self.model)
         for item in self.items:
             item.bind()
+        self._bound = len(self.items)
         self._known = {self.model.geom(geometry.name).id: geometry for geometry in self.geometries}
         self._soften()
         mujoco.mj_step1(self.model, self.data)
@@ -317,7 +318,7 @@ class MujocoScene:
         body = self.spec.worldbody.add_body(name=name, pos=(x, y, z), quat=(w, i, j, k), mocap=mass == 0)
         if mass > 0:
             moments, turn = _principal(_inertia(shapes, mass)) if inertia is None else (inertia, (1.0, 0.0, 0.0, 0.0))
-            body.mass, body.inertia, body.iquat, body.explicitinertial = mass, moments, turn, True
+            body.mass, body.ipos, body.inertia, body.iquat, body.explicitinertial = mass, (0, 0, 0), moments, turn, True
             body.add_freejoint()
         geometries: list[Geometry] = []
         for shape in shapes:
@@ -640,9 +641,9 @@ def _inertia(shapes: Sequence[Shape], mass: float) -> Array:
         i, j, k, w = shape.pose.quaternion
         body.add_geom(type=KINDS[shape.kind], size=_size(shape), pos=shape.pose.xyz, quat=(w, i, j, k))
     model = spec.compile()
-    axes = np.zeros(9)
-    mujoco.mju_quat2Mat(axes, model.body_iquat[1])
-    axes, com, share = axes.reshape(3, 3), model.body_ipos[1], mass / model.body_mass[1]
+    turn = np.zeros(9)
+    mujoco.mju_quat2Mat(turn, model.body_iquat[1])
+    axes, com, share = turn.reshape(3, 3), model.body_ipos[1], mass / model.body_mass[1]
     central = share * axes @ np.diag(model.body_inertia[1]) @ axes.T
     inertia: Array = central + mass * (com @ com * np.eye(3) - np.outer(com, com))
     return inertia
