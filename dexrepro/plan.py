@@ -72,8 +72,9 @@ class Plan:
     @property
     def versions(self) -> dict[str, str]:
         """Packages whose version can change a number of it, with their versions."""
-        simulated = uses_engine(chapters.load(self.chapter).experiment(self.experiment))
-        return {name: version(name) for name in (*NUMERICAL, *([self.engine] if simulated else []))}
+        experiment = chapters.load(self.chapter).experiment(self.experiment)
+        engine = [self.engine] if uses_engine(experiment) else []
+        return {name: version(name) for name in (*NUMERICAL, *engine, *experiment.requires)}
 
     @property
     def contents(self) -> dict[str, str]:

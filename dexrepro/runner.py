@@ -22,7 +22,7 @@ from dexrepro.case import live
 from dexrepro.case import run as run_case
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics
-from dexrepro.plan import NUMERICAL, PARTIAL, Job, Plan, import_anew, own_digest, presentation
+from dexrepro.plan import PARTIAL, Job, Plan, import_anew, own_digest, presentation
 from dexrepro.pool import COMPLETES, Failure, Pool, start_method
 from dexrepro.progress import Progress, Silent
 from dexrepro.recordings import load_recording, save_recording
@@ -288,7 +288,7 @@ def _run_entry(plan: Plan, entries: dict[str, CaseEntry], series: list[str]) -> 
         presentation=plan.presentation,
         differs=plan.differs,
         series=series,
-        packages={name: version(name) for name in (*NUMERICAL, plan.engine, *PACKAGES)},
+        packages={**plan.versions, **{name: version(name) for name in PACKAGES}},
         machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
         python=platform.python_version(),
         wall=wall,
