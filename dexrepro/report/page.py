@@ -75,7 +75,7 @@ class _Report:
             self._page_of_run(run, common)
         self._page("claims", here="claims", **common)
         self._page("errata", here="errata", **common)
-        agreeing = [key for key, pair in self.templates.globals["engines"].items() if len(set(pair)) == 1]
+        agreeing = [key for key, pair in crosscheck.verdicts(self.results).items() if len(set(pair)) == 1]
         self._page("verdicts", here="verdicts", examples=verdicts.examples(claims), agreeing=agreeing, **common)
         self._page("symbols", here="symbols", **common)
         self._page("equations", here="equations", equations=index, **common)
