@@ -31,7 +31,7 @@ TUNE = {
     "tune_command": "case=EXPERIMENT.CASE minimise=METRIC (or maximise=) budget=N, and parameters: law.gain=0.01..0.1",
     "compare_command": "laws=FOLDER case=EXPERIMENT.CASE,... minimise=METRIC (or maximise=) budget=N",
 }
-STUDY = ("claim", "samples", "hours")  # what only a study knows
+STUDY = ("claim", "samples", "hours", "engine")  # what only a study knows
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
 
 for name in ("stdout", "stderr"):  # closed, or of an alphabet that lacks a sign: no reason to fail
@@ -242,6 +242,7 @@ def _sentences(outcome: Any) -> list[str]:
 
 def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     from dexrepro.config import compose_chapter
+    from dexrepro.physics.engine import REFERENCE
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
     from dexrepro.runner import Outcome, run_plans, summary_rows
@@ -257,6 +258,11 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
         chapter_plans, chapter_skipped = plan_chapter(number, own, composed=settings)
         plans += chapter_plans
         skipped |= chapter_skipped
+    if settings.get("engine") is None and any(REFERENCE != plan.engine in plan.versions for plan in plans):
+        err.print(
+            "PyBullet is not installed here (its wheels end at Python 3.11): MuJoCo simulates the arms; how its "
+            "numbers differ from those stored is in docs/engines.md"
+        )
     quiet = bool(settings.get("quiet"))
     progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
     with progress if isinstance(progress, Bar) else nullcontext():
@@ -515,12 +521,15 @@ def render_command(options: argparse.Namespace) -> int:
 def study_command(options: argparse.Namespace) -> int:
     """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=N] [hours=H] [jobs=N hydra/launcher=...]``."""
     from dexrepro import study
+    from dexrepro.config import check_engine
+    from dexrepro.physics.engine import default
     from dexrepro.selection import selected
 
     if any(text.startswith(("jobs=", "hydra")) for text in options.selection):
         return _study_jobs(options)
     numbers, only, results, workers, values = selected(options.selection, STUDY)
     samples, hours = _samples(values.get("samples")), _hours(values.get("hours"))
+    check_engine(engine := values.get("engine", default()))
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
             if options.confirm:
@@ -529,7 +538,9 @@ def study_command(options: argparse.Namespace) -> int:
                 out.print(f"{name}: {carried} cases of samples carried over{differ}", markup=False)
                 continue
             try:
-                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update)
+                path = study.run(
+                    number, name, samples, results, workers=workers, hours=hours, update=options.update, engine=engine
+                )
             except study.SamplesFailed as error:
                 err.print(str(error), markup=False)
                 return FAILED
