@@ -380,7 +380,6 @@ class MujocoScene:
             scale = (1.0 - SOFT) * sum(model.body_invweight0[body][0] for body in bodies)
             model.pair_solimp[index] = (SOFT, SOFT, *IMPEDANCE[2:])
             model.pair_solref[index] = -stiffness * scale, -damping * scale
-            model.pair_solreffriction[index] = self._stiff
 
     def hinge(self, arm: SimulatedArm, body: RigidBody, lever: Vector) -> None:
         assert isinstance(arm, MujocoArm)
