@@ -91,7 +91,10 @@ Drawings: TypeAlias = "dict[str, matplotlib.figure.Figure]"  # by the number of 
 
 @dataclass(frozen=True)
 class Figure:
-    """What surrounds a figure: caption (what was simulated, what the book shows) and one-sentence alternative text."""
+    """What surrounds a figure: caption (what was simulated, what the book shows) and one-sentence alternative text.
+
+    Numbers of a run stand in them as in a claim's note, ``{experiment.case.metric:.3g}``.
+    """
 
     caption: str
     alt: str = ""

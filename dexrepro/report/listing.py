@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from dexrepro import chapters
+from dexrepro import baselines, chapters
+from dexrepro.claims import filled
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.study import robustness_of
 
@@ -17,6 +18,9 @@ def listing() -> dict[str, Any]:
 def _chapter(number: str) -> dict[str, Any]:
     chapter, composed = chapters.load(number), compose_chapter(number)
     words = robustness_of(number)
+    metrics = {
+        name: entry["value"] for item in baselines.stored(number).values() for name, entry in item.metrics.items()
+    }
     return {
         "chapter": number,
         "title": chapter.title,
@@ -51,7 +55,7 @@ def _chapter(number: str) -> dict[str, Any]:
                 "id": erratum.id,
                 "equation": erratum.equation,
                 "kind": erratum.kind,
-                "summary": erratum.summary,
+                "summary": filled(erratum.summary, metrics),
                 "switch": erratum.switch,
             }
             for erratum in chapter.errata

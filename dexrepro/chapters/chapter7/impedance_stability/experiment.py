@@ -13,6 +13,7 @@ from dexrepro.robots.pen_arm import gripper, pen_arm
 
 RATE = 1000.0
 CHATTER = 1.0  # N m of torque travel a joint; smooth runs have 0.15
+FLOOR = 1e-4  # V / V(0) down to which V is judged: below is the noise of the estimate
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
@@ -58,7 +59,7 @@ def lyapunov_metrics(recording: Recording, config: Config) -> Metrics:
     pairs = zip(recording["arm.position"][early], recording["filtered_error"][early])
     value = np.array([r @ model.mass_matrix(q) @ r for q, r in pairs])
     recording.series = {"time": recording.time[early], "lyapunov": value}
-    low = np.flatnonzero(value < 1e-4 * value[0])
+    low = np.flatnonzero(value < FLOOR * value[0])
     falling = value[: low[0] + 1] if len(low) else value
     return {
         "lyapunov_rise": float((falling[1:] / falling[:-1]).max() - 1),

@@ -21,7 +21,8 @@ FIGURES = {
         "A small arm over a board with a stack of cubes.",
     ),
     "7.5": Figure(
-        "A simulated demonstration with the tall obstacle at the far place: the arm is led over it.",
+        "A simulated demonstration with the tall obstacle at the far place, at its start, at half its height, at the "
+        "obstacle and at its end.",
         "Four pictures of the arm passing over the stack.",
     ),
     "7.6": Figure(

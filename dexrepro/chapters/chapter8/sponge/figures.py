@@ -18,9 +18,9 @@ from .experiment import VIEW
 
 FIGURES = {
     "8.12": Figure(
-        "The simulated Baxter arm above and on the sponge at four instants, the box as low as it is pressed. The book "
-        "shows a photograph of the real arm.",
-        "A red arm with its gripper pointing down meets a yellow block.",
+        "The simulated Baxter arm above the sponge, and its gripper on it at three instants seen from near by, the box "
+        "as low as it is pressed. The book shows a photograph of the real arm.",
+        "A red arm with its gripper pointing down meets a yellow block, which it presses less at the end than before.",
     ),
     "8.13": Figure(
         "Desired, virtual and actual path of the gripper in the simulated sponge experiment, with the learned law, "
@@ -87,14 +87,20 @@ def _phases(axes: Any, run: Recording, names: bool = True) -> None:
 def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
-    images = style.trimmed(recordings["learned"].images)
-    names = sorted(images, key=lambda name: float(name.removeprefix("at_").removesuffix("s")))
-    figure, row = style.subplots(1, len(names), height=1.7)
-    for axes, name in zip(np.atleast_1d(row), names):
-        axes.imshow(images[name])
+    run, values = recordings["learned"], metrics["learned"]
+    depth = 1e3 * np.maximum(config.cases.learned.sponge.surface - run["arm.tip"][:, 2], 0)
+    instants = sorted((float(name.removeprefix("at_").removesuffix("s")), name) for name in run.images)
+    figure, row = style.subplots(1, len(instants), height=1.8)
+    for axes, (instant, name) in zip(np.atleast_1d(row), instants):
+        axes.imshow(run.images[name])
         axes.set_axis_off()
-        axes.set_title(f"{name.removeprefix('at_').removesuffix('s')} s")
-    style.title(figure, "The simulated Baxter arm comes down on the sponge and yields")
+        pressed = depth[np.abs(run.time - instant).argmin()]
+        axes.set_title(f"{instant:g} s" + (f": {pressed:.0f} mm deep" if pressed else ""))
+    style.title(
+        figure,
+        f"The simulated arm presses the sponge {values['peak_compression']:.0f} mm deep while it learns, "
+        f"{values['final_compression']:.0f} mm in the end",
+    )
     return figure
 
 

@@ -98,9 +98,9 @@ CLAIMS = (
         control=less(f"{OBJECT}.lqr.fraction_theory", f"{OBJECT}.lqr_true.fraction_theory", 1.01),
         printed=less(f"{OBJECT}.soft.desired_path_error", 0.01),
         where="8.4.3",
-        note="Optimal for the printed cost with M = -1, which is not the circle's. Three digits, limited by the half "
-        "step by which velocities of the physics engine lag; nine digits on exact data. The regressor s must obey "
-        "(8.8); the desired path x_d/N does not (E8.09).",
+        note="Optimal for the printed cost with M = -1, which is not the circle's. It is off by "
+        "{unknown_object.soft.gain_error_x:.1g}, for the half step by which velocities of the physics engine lag. The "
+        "regressor s must obey (8.8); the desired path x_d/N does not (E8.09).",
     ),
     Claim(
         "C8.13k",
@@ -127,7 +127,8 @@ CLAIMS = (
         "The cost of the whole contact, learning included, is not higher than the regulator's.",
         less(f"{OBJECT}.soft.contact_cost", f"{OBJECT}.lqr.contact_cost"),
         source="ours",
-        note="Over the one contact the wrong-model regulator wins: the soft change keeps the bad initial gain longest.",
+        note="{unknown_object.soft.contact_cost:.3g} against {unknown_object.lqr.contact_cost:.3g}: the soft change "
+        "keeps the bad initial gain longest.",
     ),
     Claim(
         "C8.15",
@@ -136,7 +137,8 @@ CLAIMS = (
         every(less(f"{OBJECT}.soft.surface_error", 0.1), less(f"{OBJECT}.soft.gain_error_x", 0.01)),
         control=less(f"{OBJECT}.absolute.gain_error_x", 0.01),
         where="8.4.3",
-        note="The surface position is needed and comes from the first contact force [mm]; 5 mm of error cost 7 % of "
-        "the gain.",
+        note="The surface position is needed and comes from the first contact force [mm]; with 5 mm of error K_x is "
+        "{unknown_object.soft.surface_low_gain_x:.3f} or {unknown_object.soft.surface_high_gain_x:.3f} N/m in place of "
+        "{unknown_object.soft.gain_x:.3f}.",
     ),
 )
