@@ -14,7 +14,7 @@ from typing import Any
 from dexrepro import chapters, cli
 from dexrepro.provenance import commented_leaves, parse_provenance
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[1]
 LIBRARY = {
     "control": "Control laws and what they are given",
     "physics": "The world in which arms are simulated",
@@ -46,6 +46,7 @@ def as_prose(app: Any, what: str, name: str, item: Any, options: Any, lines: lis
     """
     parts = CODE.split("\n".join(lines))
     parts[::2] = [re.sub(r"([*|]|(?<=\w)_(?!\w))", r"\\\1", part) for part in parts[::2]]
+    parts[2::2] = [re.sub(r"^(?=[\w(\[])", r"\\ ", part) for part in parts[2::2]]  # ``force``(time)
     paragraphs = "".join(parts).split("\n\n")
     lines[:] = "\n\n".join(
         _list(text) if ARGUMENT.match(text) and "\n    " in text else text for text in paragraphs
