@@ -48,6 +48,18 @@ class Config(dict[str, Any]):
         return value
 
 
+def changed(case: Mapping[str, Any], shared: Mapping[str, Any], prefix: str = "") -> set[str]:
+    """Dotted keys in which a case differs from its experiment's own block: what the case is."""
+    found: set[str] = set()
+    for key, value in case.items():
+        other = shared.get(key)
+        if isinstance(value, Mapping) and isinstance(other, Mapping):
+            found |= changed(value, other, f"{prefix}{key}.")
+        elif value != other:
+            found.add(f"{prefix}{key}")
+    return found
+
+
 @dataclass
 class Recording:
     """What one case leaves behind.

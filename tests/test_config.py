@@ -152,6 +152,17 @@ def test_a_block_inherits_what_it_does_not_say_itself() -> None:
         inherited({"e": {"inherits": "shared.nothing"}})
 
 
+def test_a_block_inherits_named_keys_of_another() -> None:
+    shared = {"inherits": "base", "gain": 1.0, "bound": {"low": 0}}
+    blocks = {"base": {"rate": 3.0, "lag": 0.1}, "shared": shared}
+    found = inherited({**blocks, "e": {"inherits": ["base", {"shared": ["gain", "rate"]}], "gain": 2.0}})["e"]
+    assert found == {"rate": "${shared.rate}", "lag": "${base.lag}", "gain": 2.0}
+    with pytest.raises(InputError, match="shared has no 'gian': did you mean 'gain'"):
+        inherited({**blocks, "e": {"inherits": {"shared": ["gian"]}}})
+    with pytest.raises(InputError, match="does not inherit from this one"):
+        inherited({"a": {"inherits": {"b": ["x"]}}, "b": {"inherits": {"a": ["x"]}}})
+
+
 def test_an_inherited_key_can_be_overridden_there_and_where_it_comes_from() -> None:
     key = "barrier_and_switch.law.position_gain"
     assert resolved_block(compose_chapter("4", [f"{key}=7"]), "barrier_and_switch")["law"]["position_gain"] == 7

@@ -48,8 +48,8 @@ CLAIMS = (
         "use {bounded_tracking.sign_only.bound_use:.0%} of the limits for u = 0, "
         "{bounded_tracking.sign_robust.bound_use:.0%} for u = 1; with the printed sign and u = 0 "
         "{bounded_tracking.printed_no_robust.bound_use:.0%} (T5.G), and "
-        "{bounded_tracking.printed_forgetting.bound_use:.0%} where the weights are forgotten at once and model, "
-        "friction and contact are known exactly.",
+        "{bounded_tracking.printed_forgetting.bound_use:.0%} where the weights are forgotten at once and M, "
+        "C and G are known exactly, as (5.32) writes them, friction and contact, too.",
     ),
     Claim(
         "C5.27",

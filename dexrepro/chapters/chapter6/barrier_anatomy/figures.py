@@ -46,13 +46,9 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     a.legend(*(part[::2] for part in a.get_legend_handles_labels()), loc="lower right", fontsize=8)
     cases = [case for case in WORDS if case in recordings]
     for row, case in enumerate(reversed(cases)):
-        frames, law = recordings[case].frames, case.removeprefix("tau1_")
-        look = {
-            "color": style.LINES["extra1" if law == "consistent" else "printed" if law == "printed" else "book"][
-                "color"
-            ],
-            "linestyle": TAU1 if law != case else "-",
-        }
+        frames, law = recordings[case].frames, config.cases[case].cdmp.law
+        role = {"consistent": "extra1", "printed": "printed"}.get(law, "book")
+        look = {"color": style.LINES[role]["color"], "linestyle": TAU1 if config.cases[case].dmp.tau else "-"}
         if law != "consistent":
             b.plot(frames["k2"]["k2"], frames["k2"].e_max, marker=".", **look)
         for axes, name, scale in ((c, "margin", 1), (d, "step", 1e3)):

@@ -7,7 +7,7 @@ import numpy as np
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import desk
 from dexrepro.control.time_delay_impedance import sampled_spectral_radius
-from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording, changed
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.robots.pen_arm import gripper, pen_arm
 
@@ -86,4 +86,11 @@ def summarise(metrics: AllMetrics, config: Config) -> Metrics:
 
 
 def gains(metrics: AllMetrics, config: Config) -> list[tuple[float, Metrics]]:
-    return [(config.cases[case].stiffness_gain, values) for case, values in metrics.items() if case.startswith("gain")]
+    """k_s and metrics of the cases that differ in nothing else, k_s as it is varied."""
+    return [
+        (case.stiffness_gain, metrics[name])
+        for name, case in config.cases.items()
+        if name in metrics
+        and case.stiffness_gain in np.atleast_1d(config.stiffness_gain)
+        and changed(case, config) <= {"stiffness_gain", "law.impedance.stiffness_gain"}
+    ]

@@ -89,6 +89,6 @@ def tabulate(recordings: Recordings, metrics: Mapping[str, Any], config: Config)
             "torque travel a joint [N m]": values["torque_travel"],
         }
         for case, values in metrics.items()
-        if case in config.cases and not case.startswith("displaced")
+        if case in config.cases and config.cases[case].initial_error == config.initial_error
     ]
     return {"T7.B": pd.DataFrame(rows)}

@@ -20,7 +20,7 @@ FIGURES = {
     "8.12": Figure(
         "The simulated Baxter arm above the sponge, and its gripper on it at three instants seen from near by, the box "
         "as low as it is pressed. The book shows a photograph of the real arm.",
-        "A red arm with its gripper pointing down meets a yellow block, which it presses less at the end than before.",
+        "A red arm with its gripper pointing down meets a yellow block.",
     ),
     "8.13": Figure(
         "Desired, virtual and actual path of the gripper in the simulated sponge experiment, with the learned law, "
@@ -31,12 +31,12 @@ FIGURES = {
     "8.14": Figure(
         "Gain of the learned law and of the regulator over time on the simulated sponge, with the optimum (dashed). "
         "The book shows the same curves.",
-        "Both components move from the initial gain to the optimum in phase 3.",
+        "Both components of the gain over time, with the optimum and the regulator's.",
     ),
     "8.C": Figure(
         "Final compression of sponges of 100 to 1000 N/m under the optimal gain and under the regulator with the "
         "wrong model, in closed form (lines) and simulated (marks). Not in the book.",
-        "The learned law compresses soft sponges more and firm ones less than the regulator.",
+        "Final compression over the stiffness of the sponge under the optimal gain and under the regulator.",
     ),
 }
 TABLES = {
@@ -150,7 +150,10 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     style.panel(error, "d", "Error to $x_0$")
     figure.legend(*depth.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     less = metrics["lqr"]["final_compression"] - metrics["learned"]["final_compression"]
-    style.title(figure, f"The learned law presses {less:.1f} mm less in the end, but more while it learns")
+    more = metrics["learned"]["peak_compression"] - metrics["lqr"]["peak_compression"]
+    style.title(
+        figure, f"The learned law presses {less:+.1f} mm less than the regulator in the end, {more:+.1f} mm more before"
+    )
     return figure
 
 

@@ -56,16 +56,15 @@ CLAIMS = (
         credits=SOFT,
         readings={
             "a reference that integrates the force error": calmer("soft", "lqr_switched"),
-            "the regulator's gain from the first contact on": calmer("soft", "lqr"),
         },
-        searched="the regulator from K_0 or constant, with both references",
+        searched="the regulator from K_0, as Fig. 8.11 shows it, with both references",
         where="8.4.3",
         note="Both laws start from the same K_0, as the book says and its Fig. 8.11 shows: force rate "
         "{unknown_object.static_soft.force_rate:.2f} against {unknown_object.static_lqr_switched.force_rate:.2f} N/s, "
         "oscillation {unknown_object.static_soft.oscillation:.2g} against "
         "{unknown_object.static_lqr_switched.oscillation:.3g} mm. With the integrating reference neither oscillates "
-        "(rate {unknown_object.soft.force_rate:.2f} against {unknown_object.lqr_switched.force_rate:.2f} N/s); to a "
-        "gain that is constant nothing happens at all.",
+        "(rate {unknown_object.soft.force_rate:.2f} against {unknown_object.lqr_switched.force_rate:.2f} N/s); a "
+        "regulator that is constant from the first contact, which Fig. 8.11 contradicts, has nothing to change.",
     ),
     Claim(
         "C8.12",
