@@ -31,7 +31,7 @@ from dexrepro.arrays import Array
 from dexrepro.baselines import baseline_dir
 from dexrepro.case import live
 from dexrepro.case import run as run_case
-from dexrepro.checks import leaves
+from dexrepro.checks import leaves, set_value, value_at
 from dexrepro.claims import LOOKS, OPEN, Claim, robustness
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.errors import InputError, nearest
@@ -78,7 +78,7 @@ def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
         own = key.startswith(f"{experiment}.") and ".cases." not in key
         shared = any(key == name or key.startswith(f"{name}.") for name in referred)
         if (origin.low is not None or origin.drawn) and (own or shared):
-            for place, value in leaves(_get(composed, key)):
+            for place, value in leaves(value_at(composed, key)):
                 number = isinstance(value, int | float) and not isinstance(value, bool)
                 if value in origin.words if origin.drawn else number:
                     found[f"{key}.{place}".rstrip(".")] = origin
@@ -92,7 +92,7 @@ def _references(composed: Mapping[str, Any], node: Any) -> set[str]:
     while todo:
         names = set(re.findall(r"\$\{([\w.]+)\}", json.dumps(todo.pop(), default=str))) - found
         found |= names
-        todo += [_get(composed, name) for name in names]
+        todo += [value_at(composed, name) for name in names]
     return found
 
 
@@ -111,18 +111,20 @@ def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float | s
     point = _points(experiment, len(numbers) + 1)[index]
     values: dict[str, float | str] = {}
     for share, (key, origin) in zip(point, numbers.items(), strict=False):
-        low, high = origin.low or 0.0, origin.high or 0.0
-        wide = low > 0 and high / low >= 10
-        value = float(low * (high / low) ** share) if wide else float(low + (high - low) * share)
-        if isinstance(_get(composed, key), int):
-            value = round(value)
-        values[key] = value = float(f"{value:.6g}") if isinstance(value, float) else value
-        _set(composed, key, value)
+        whole = isinstance(value_at(composed, key), int)
+        values[key] = within(float(share), origin.low or 0.0, origin.high or 0.0, whole)
+        set_value(composed, key, values[key])
     for share, (key, origin) in zip(_points(f"words of {experiment}", len(words))[index], words.items(), strict=False):
         values[key] = origin.words[int(share * len(origin.words))]
-        _set(composed, key, values[key])
+        set_value(composed, key, values[key])
     values["seed"] = int(point[-1] * (1 << 16))
     return values, {**resolved_block(composed, experiment), "cases": experiment_cases(composed, experiment)}
+
+
+def within(share: float, low: float, high: float, whole: bool = False) -> float:
+    """The value at a share of a range, to six digits; a range over a decade is covered evenly in the logarithm."""
+    value = low * (high / low) ** share if low > 0 and high / low >= 10 else low + (high - low) * share
+    return round(value) if whole else float(f"{value:.6g}")
 
 
 def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]) -> dict[str, Any]:
@@ -323,6 +325,11 @@ def _all(experiment: str, results: Path) -> Iterator[dict[str, Any]]:
         yield from _read(_lines(summary_file(experiment, results, update)))
 
 
+def shipped_samples(experiment: str) -> list[dict[str, Any]]:
+    """The samples that are shipped, whatever simulation made them."""
+    return list(_read(_lines(summary_file(experiment, Path(), shipped=True))))
+
+
 def _folder(results: Path) -> Path:
     return results / "studies"
 
@@ -483,19 +490,3 @@ def _read(path: Path) -> Iterator[dict[str, Any]]:
             sound = isinstance(entry["index"], int) and entry["index"] >= 0 and isinstance(entry["values"], dict)
             if sound and all(isinstance(row["content"], str) for row in entry["cases"].values()):
                 yield entry
-
-
-def _get(node: Any, dotted: str) -> Any:
-    for part in dotted.split("."):
-        if isinstance(node, list) and part.isdigit():
-            node = node[int(part)]
-        else:
-            node = node.get(part) if isinstance(node, Mapping) else None
-    return node
-
-
-def _set(node: Any, dotted: str, value: Any) -> None:
-    *parents, last = (int(part) if part.isdigit() else part for part in dotted.split("."))
-    for part in parents:
-        node = node[part]
-    node[last] = value
