@@ -3,7 +3,8 @@
 A sample draws every ranged parameter of an experiment, and the seed: scrambled Sobol points cover the ranges evenly. It
 keeps the *metrics* of the cases, each with the key of its simulation, so that claims, controls and printed forms are
 evaluated from samples made earlier: rewording a claim costs nothing, a new case costs that case alone, and only a
-changed simulation runs again. A study looks at 16, 40 and 100 samples and ends when all its claims are decided.
+changed simulation runs again; ``confirm`` carries samples over a change of code that changed no number. A study looks
+at 16, 40 and 100 samples and ends when all its claims are decided.
 
 Samples are kept one a line beside the summary; the same study may be started any number of times, on any machine that
 shares the results folder: its processes share the samples.
@@ -25,7 +26,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from dexrepro import chapters
+from dexrepro import baselines, chapters
 from dexrepro.arrays import Array
 from dexrepro.baselines import baseline_dir
 from dexrepro.case import live
@@ -118,10 +119,10 @@ def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float], d
     return values, {**resolved_block(composed, experiment), "cases": experiment_cases(composed, experiment)}
 
 
-def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any] | None = None) -> dict[str, Any]:
+def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]) -> dict[str, Any]:
     """One sample: what was drawn and, of every case that a claim is about, the key of its simulation and its metrics.
 
-    known: cases of the same sample that were run before; those whose simulation is the same are taken over.
+    known: cases that were run before, by the key of their simulation; they are taken over.
     """
     values, block = draw(chapter, experiment, index)
     seed = int(values["seed"])
@@ -129,9 +130,9 @@ def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]
     definition, cases = loaded.experiment(experiment), {}
     for case in _cases_of(loaded.claims_of(experiment), block["cases"]):
         config = {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case}
-        content, earlier = content_of(definition, config), (known or {}).get(case)
-        if earlier and earlier["content"] == content:
-            cases[case] = earlier
+        content = content_of(definition, config)
+        if content in known:
+            cases[case] = known[content]
             continue
         start = time.perf_counter()
         try:
@@ -144,14 +145,66 @@ def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]
 
 def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any]) -> bool:
     """Whether a stored sample has every case that the claims are about, under its present simulation."""
-    values, block = draw(chapter, experiment, entry["index"])
+    contents = _contents(chapter, experiment, entry["index"])
+    return all(entry["cases"].get(case, {}).get("content") == content for case, content in contents.items())
+
+
+def _contents(chapter: str, experiment: str, index: int) -> dict[str, str]:
+    """The key of the present simulation of every case that a claim is about, in one sample."""
+    values, block = draw(chapter, experiment, index)
     loaded, seed = chapters.load(chapter), int(values["seed"])
     definition = loaded.experiment(experiment)
-    return all(
-        entry["cases"].get(case, {}).get("content")
-        == content_of(definition, {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case})
+    return {
+        case: content_of(definition, {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case})
         for case in _cases_of(loaded.claims_of(experiment), block["cases"])
-    )
+    }
+
+
+def confirm(chapter: str, experiment: str, results: Path, update: bool = False) -> tuple[int, list[str]]:
+    """Carry samples over a change of code: returns how many cases of samples were carried, and the cases that differ.
+
+    The first and the last sample made by other code, of the same draw, run again. A case whose metrics are in both what
+    they were, within the tolerances of the baseline, is the same simulation: its other samples count as such. The
+    samples are those that are shipped where ``update`` renews them, else those among the results.
+    """
+    path = _lines(summary_file(experiment, results, update))
+    entries = {entry["index"]: entry for entry in (_read(path) if update else _all(experiment, results))}
+    old = [
+        entry
+        for entry in entries.values()
+        if not _is_present(chapter, experiment, entry)
+        and entry["values"] == draw(chapter, experiment, entry["index"])[0]
+    ]
+    again = {entry["index"]: evaluate(chapter, experiment, entry["index"], {}) for entry in old[:1] + old[-1:]}
+    known = baselines.stored(chapter)[experiment].metrics
+    ran = {case for sample in again.values() for case in sample["cases"]}
+    same = {
+        case
+        for case in ran
+        if all(
+            _is_same(f"{experiment}.{case}", entries[index]["cases"].get(case, {}), sample["cases"][case], known)
+            for index, sample in again.items()
+        )
+    }
+    carried = 0
+    for entry in old:
+        for case, content in _contents(chapter, experiment, entry["index"]).items():
+            if case in same and case in entry["cases"] and entry["cases"][case]["content"] != content:
+                entry["cases"][case]["content"] = content
+                carried += 1
+    if carried:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with locked(_folder(results)):
+            _write_lines(path, [entries[index] for index in sorted(entries)])
+    return carried, sorted(ran - same)
+
+
+def _is_same(name: str, old: Mapping[str, Any], new: Mapping[str, Any], known: Mapping[str, Mapping[str, Any]]) -> bool:
+    """Whether a case of a sample gave the same numbers twice; both may have failed."""
+    was, now = ({f"{name}.{key}": value for key, value in row.get("metrics", {}).items()} for row in (old, new))
+    exact = {"rtol": 2e-6, "atol": 0.0}  # samples keep six digits
+    entries = {key: {**known.get(key, exact), "value": value} for key, value in was.items()}
+    return was.keys() == now.keys() and all(baselines.agrees(now[key], entry) for key, entry in entries.items())
 
 
 def metrics_of(chapter: str, experiment: str, entry: Mapping[str, Any]) -> Metrics:
@@ -237,10 +290,13 @@ def contribute(chapter: str, experiment: str, index: int, results: Path, deadlin
     with claimed(_folder(results), f"{experiment}.{index}", wait=False) as mine:
         if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index):
             return
-        known = [entry for entry in _all(experiment, results) if entry["index"] == index]
-        line = _line(
-            evaluate(chapter, experiment, index, {"cases": {k: v for e in known for k, v in e["cases"].items()}})
-        )
+        known = {
+            row["content"]: row
+            for entry in _all(experiment, results)
+            if entry["index"] == index
+            for row in entry["cases"].values()
+        }
+        line = _line(evaluate(chapter, experiment, index, known))
         with locked(_folder(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
             file.seek(max(file.tell() - 1, 0))
             cut_short = file.read(1) not in (b"", b"\n")
