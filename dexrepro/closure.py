@@ -240,7 +240,14 @@ def _file(module: str) -> Path | None:
 
 def _place(module: str) -> str | None:
     """Where a module lies: its file, or the folder of a package without one."""
-    loaded = sys.modules.get(module)
+    loaded, parent = sys.modules.get(module), module.rpartition(".")[0]
+    if (
+        loaded is None
+        and parent
+        and str(_place(parent)).endswith(".py")
+        and not str(_place(parent)).endswith("__init__.py")
+    ):
+        return None  # a name of a module, which need not be imported to say so
     try:
         spec = getattr(loaded, "__spec__", None) or importlib.util.find_spec(module)
     except (ImportError, AttributeError, ValueError):

@@ -63,9 +63,9 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
     added = [text for text in overrides if text.startswith("+")]
     try:
         if added:
-            raw = _compose([f"chapter='{chapter}'", *added, *search])
+            raw = _compose(chapter, [*added, *search])
         check_overrides(overrides, inherited(raw))
-        composed = inherited(_compose([f"chapter='{chapter}'", *forced(overrides, raw), *search]))
+        composed = inherited(_compose(chapter, [*forced(overrides, raw), *search]))
     except (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, TypeError) as error:
         raise InputError(" ".join(str(error.__cause__ or error).split())) from error
     if unknown := [key for key in composed if key not in shipped]:
@@ -184,7 +184,7 @@ def read_config(path: Path) -> dict[str, Any]:
     return content
 
 
-def _offer(chapter: str) -> None:
+def offer(chapter: str) -> None:
     """Let Hydra find the configuration of a chapter outside the package."""
     if chapter == chapters.OWN or not chapters.is_added(chapter):
         return
@@ -207,22 +207,22 @@ def _shipped(folder: str, chapter: str, changed: float) -> dict[str, Any]:
     """The configuration without overrides; composing takes a while, so it is kept until the files change."""
 
     def composed() -> tuple[dict[str, Any], list[Path]]:
-        _offer(chapter)
         files = config_files(chapter).values()
         folders = {path.parent for path in files} | {config_dir(), config_dir() / "chapter"}
-        return _compose([f"chapter='{chapter}'"]), [Path(__file__), *files, *folders, *config_dir().rglob("*.yaml")]
+        return _compose(chapter), [Path(__file__), *files, *folders, *config_dir().rglob("*.yaml")]
 
     return dict(kept(f"chapter {chapter} of {folder}, {os.environ.get(chapters.ADDED)}", composed))
 
 
-def _compose(overrides: list[str]) -> dict[str, Any]:
+def _compose(chapter: str, overrides: Sequence[str] = ()) -> dict[str, Any]:
     from hydra import compose, initialize_config_dir
     from hydra.core.global_hydra import GlobalHydra
     from omegaconf import OmegaConf
 
+    offer(chapter)
     GlobalHydra.instance().clear()
     with initialize_config_dir(str(config_dir().resolve()), version_base="1.3"):
-        config = compose("config", overrides=overrides)
+        config = compose("config", overrides=[f"chapter='{chapter}'", *overrides])
     return OmegaConf.to_container(config, resolve=False)  # type: ignore[return-value]
 
 

@@ -15,6 +15,7 @@ from typing import Any
 from dexrepro import __version__
 
 SETTLED = 1.0  # s: what was written later than so long before it was read may be written again unnoticed
+FORGOTTEN = 60 * 24 * 3600.0  # s: what is older is found out again
 
 
 def kept(what: str, make: Callable[[], tuple[Any, Iterable[Path] | None]]) -> Any:
@@ -38,6 +39,9 @@ def kept(what: str, make: Callable[[], tuple[Any, Iterable[Path] | None]]) -> An
             part = path.with_suffix(f".{os.getpid()}")
             part.write_text(json.dumps({"files": stamps, "value": value}), encoding="utf-8")
             part.replace(path)
+            for old in path.parent.iterdir():
+                if old.stat().st_mtime < time.time() - FORGOTTEN:
+                    old.unlink()
     return value
 
 

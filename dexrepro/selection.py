@@ -9,7 +9,17 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dexrepro import chapters
-from dexrepro.config import SETTINGS, as_written, check_overrides, compose_chapter, forced, in_quotes, own_keys, parsed
+from dexrepro.config import (
+    SETTINGS,
+    as_written,
+    check_overrides,
+    compose_chapter,
+    forced,
+    in_quotes,
+    offer,
+    own_keys,
+    parsed,
+)
 from dexrepro.errors import InputError, nearest
 from dexrepro.plan import select
 
@@ -114,6 +124,8 @@ def for_hydra(arguments: Sequence[str], overrides: Sequence[str], extra_dir: str
     Raises InputError for what no job could use, before Hydra starts any.
     """
     numbers, rest = chapters_of(overrides, extra_dir)
+    for number in numbers:
+        offer(number)
     if extra_dir is None:  # what its files add is known to Hydra alone
         check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
     named = any(re.match(r"chapter=|figure=.*,", text) for text in overrides)
