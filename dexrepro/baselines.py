@@ -1,13 +1,17 @@
 """Stored metrics and verdicts: compare results with them (never simulating), and renew them.
 
 A tolerance says how sensitive a number is: ``update`` reruns each case with the initial state moved by each of
-``PERTURBATIONS`` and keeps ``rtol = max(1e-3, 10 x the largest relative change)``, likewise ``atol`` for metrics near
-zero. Counts are exact unless a rerun changes them. A tolerance with a "reason" was set by hand and survives updates.
+``PERTURBATIONS``, and experiments of seconds also with the arithmetic of other machines (``arithmetics``), and keeps
+``rtol = max(1e-3, 10 x the largest relative change)``, likewise ``atol`` for metrics near zero. Counts are exact unless
+a rerun changes them. A tolerance with a "reason" was set by hand and survives updates.
 """
 
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -16,12 +20,14 @@ from typing import Any
 from dexrepro import chapters
 from dexrepro.config import in_quotes
 from dexrepro.errors import InputError
-from dexrepro.plan import outdated, plan_chapter, select
+from dexrepro.plan import Plan, outdated, plan_chapter, select
+from dexrepro.pool import BLAS_THREADS
 from dexrepro.report.damage import check_result, read_table
 from dexrepro.runner import run_plans
 from dexrepro.storage import read_json, write_json
 
 PERTURBATIONS = (1e-9, -1e-9)  # rad, or share of the input data's range; one may take the same branch by luck
+SECONDS = 60.0  # of wall time of all cases, up to which an experiment is run with other arithmetic, too
 RTOL = 1e-3
 ATOL = 1e-9
 NEAR_ZERO = 1e-6
@@ -293,10 +299,12 @@ def update_chapter(
         outcome = run_plans(which, workers=workers, force=False)
         if outcome.failures:
             raise InputError("; ".join(f"{name}: {text}" for name, text in outcome.failures.items()))
+    elsewhere = _run_elsewhere(chapter, plans, results, workers)
     old = {plan.experiment: Baseline.of(chapter, plan.experiment) for plan in plans}
     new: dict[str, Baseline] = {}
     for plan, *perturbed in zip(plans, *moved, strict=True):
         metrics, *disturbed = (read_json(p.folder / "metrics.json") for p in (plan, *perturbed))
+        disturbed += elsewhere.get(plan.experiment, [])
         stored = old[plan.experiment].metrics
         entries = {
             name: _entry(value, [other.get(name) for other in disturbed], stored.get(name))
@@ -323,6 +331,34 @@ def update_chapter(
         written.append(f"wrote {path}")
     lines = [f"{key}: {before} -> {after}" for key, (before, after) in changed.items()]
     return [*lines, *(line for baseline in new.values() for line in _sensitive(baseline.metrics)), *written]
+
+
+def arithmetics() -> tuple[dict[str, str], ...]:
+    """Environments in which the last bits differ: an old processor's kernels of BLAS, numpy and libm; two threads."""
+    import numpy as np
+
+    vectors = np.show_config(mode="dicts")["SIMD Extensions"].get("found", [])
+    old = {"NPY_DISABLE_CPU_FEATURES": " ".join(vectors), "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"}
+    return {"OPENBLAS_CORETYPE": "Prescott", **old}, {"OPENBLAS_CORETYPE": "Haswell", BLAS_THREADS: "2"}
+
+
+def _run_elsewhere(
+    chapter: str, plans: Sequence[Plan], results: Path, workers: int | None
+) -> dict[str, list[dict[str, Any]]]:
+    """Metrics of the experiments that run in seconds, by experiment, with the arithmetic of each other machine."""
+    short = [p.experiment for p in plans if read_json(p.folder / "run.json")["wall"] < SECONDS]
+    found: dict[str, list[dict[str, Any]]] = {name: [] for name in short}
+    for number, environment in enumerate(arithmetics() if short else ()):
+        there = results.absolute() / ".cache" / f"arithmetic{number}"
+        line = [sys.executable, "-m", "dexrepro", "run", f"chapter={chapter}", f"only=[{','.join(short)}]"]
+        line += [f"results={there}", *([f"workers={workers}"] if workers else [])]
+        done = subprocess.run(line, env=os.environ | environment, capture_output=True, encoding="utf-8", check=False)
+        if done.returncode:
+            texts = " ".join(f"{key}={value}" for key, value in environment.items())
+            raise InputError(f"with {texts}: {' '.join(done.stderr.split())}")
+        for name in short:
+            found[name].append(read_json(there / f"chapter{chapter}" / name / "metrics.json"))
+    return found
 
 
 def _entry(value: float | None, disturbed: Sequence[float | None], stored: Mapping[str, Any] | None) -> dict[str, Any]:

@@ -102,7 +102,8 @@ def inherited(composed: Mapping[str, Any]) -> dict[str, Any]:
     """The same with every block that says ``inherits: shared.law`` filled in.
 
     What the block named has and the inheriting block lacks is referred to leaf by leaf (``gain: ${shared.law.gain}``;
-    ``_target_`` is copied), so that an override of either key works. Several blocks are a list, a later one wins.
+    ``_target_`` is copied), so that an override of either key works. Several blocks are a list, a later one wins;
+    ``{shared.law: [gain, rate]}`` names what is taken of a block.
     """
     return {key: value if key == "hydra" else _inherited(value, composed, ()) for key, value in composed.items()}
 
@@ -111,18 +112,28 @@ def _inherited(node: Any, composed: Mapping[str, Any], within: tuple[str, ...]) 
     if not isinstance(node, Mapping):
         return copy.deepcopy(node)
     result: dict[str, Any] = {}
-    parents = node.get(INHERITS, [])
-    for parent in [parents] if isinstance(parents, str) else parents:
+    for parent, taken in _parents(node.get(INHERITS, [])):
         base: Any = composed
         for part in parent.split("."):
             base = base.get(part) if isinstance(base, Mapping) else None
-        if not isinstance(base, Mapping) or parent in within:
+        this = f"{parent}: {', '.join(taken)}" if taken else parent
+        if not isinstance(base, Mapping) or this in within:
             raise InputError(
-                f"{INHERITS}: {parent} is not allowed: it must name a block that does not inherit from this one"
+                f"{INHERITS}: {this} is not allowed: it must name a block that does not inherit from this one"
             )
-        result = _laid_over(result, _forwarded(_inherited(base, composed, (*within, parent)), parent))
+        part_of = {key: value for key, value in base.items() if not taken or key in (*taken, INHERITS)}
+        found = _inherited(part_of, composed, (*within, this))
+        if missing := [key for key in taken if key not in found]:
+            raise InputError(f"{INHERITS}: {parent} has no '{missing[0]}': {nearest(missing[0], {**base, **found})}")
+        result = _laid_over(result, _forwarded({key: found[key] for key in taken or found}, parent))
     own = {key: _inherited(value, composed, within) for key, value in node.items() if key != INHERITS}
     return _laid_over(result, own)
+
+
+def _parents(named: Any) -> Iterator[tuple[str, list[str]]]:
+    """Blocks to inherit from, each with the keys that are taken of it (none: all)."""
+    for item in named if isinstance(named, list) else [named]:
+        yield from item.items() if isinstance(item, Mapping) else [(item, [])]
 
 
 def _forwarded(node: Mapping[str, Any], prefix: str) -> dict[str, Any]:

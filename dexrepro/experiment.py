@@ -47,6 +47,18 @@ class Config(dict[str, Any]):
         return value
 
 
+def changed(case: Mapping[str, Any], shared: Mapping[str, Any], prefix: str = "") -> set[str]:
+    """Dotted keys in which a case differs from its experiment's own block: what the case is."""
+    found: set[str] = set()
+    for key, value in case.items():
+        other = shared.get(key)
+        if isinstance(value, Mapping) and isinstance(other, Mapping):
+            found |= changed(value, other, f"{prefix}{key}.")
+        elif value != other:
+            found.add(f"{prefix}{key}")
+    return found
+
+
 @dataclass
 class Recording:
     """What one case leaves behind.
@@ -90,7 +102,10 @@ Drawings: TypeAlias = "dict[str, matplotlib.figure.Figure]"  # by the number of 
 
 @dataclass(frozen=True)
 class Figure:
-    """What surrounds a figure: caption (what was simulated, what the book shows) and one-sentence alternative text."""
+    """What surrounds a figure: caption (what was simulated, what the book shows) and one-sentence alternative text.
+
+    Numbers of a run stand in them as in a claim's note, ``{experiment.case.metric:.3g}``.
+    """
 
     caption: str
     alt: str = ""

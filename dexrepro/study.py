@@ -30,7 +30,7 @@ from dexrepro.arrays import Array
 from dexrepro.baselines import baseline_dir
 from dexrepro.case import live
 from dexrepro.case import run as run_case
-from dexrepro.checks import leaves
+from dexrepro.checks import leaves, set_value, value_at
 from dexrepro.claims import LOOKS, OPEN, Claim, robustness
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.errors import InputError, nearest
@@ -65,7 +65,7 @@ QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the margin, in a summary
 
 @cache
 def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
-    """Parameters with a declared range that an experiment uses: its own, and the shared ones it refers to.
+    """Parameters that an experiment uses, its own and the shared ones it refers to, with a range or words to draw from.
 
     A list of numbers is varied element by element, under the keys ``list.0``, ``list.1``, ...
     """
@@ -75,9 +75,10 @@ def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
     for key, origin in provenance(chapter).items():
         own = key.startswith(f"{experiment}.") and ".cases." not in key
         shared = any(key == name or key.startswith(f"{name}.") for name in referred)
-        if origin.low is not None and (own or shared):
-            for place, value in leaves(_get(composed, key)):
-                if isinstance(value, int | float) and not isinstance(value, bool):
+        if (origin.low is not None or origin.drawn) and (own or shared):
+            for place, value in leaves(value_at(composed, key)):
+                number = isinstance(value, int | float) and not isinstance(value, bool)
+                if value in origin.words if origin.drawn else number:
                     found[f"{key}.{place}".rstrip(".")] = origin
     return found
 
@@ -89,7 +90,7 @@ def _references(composed: Mapping[str, Any], node: Any) -> set[str]:
     while todo:
         names = set(re.findall(r"\$\{([\w.]+)\}", json.dumps(todo.pop(), default=str))) - found
         found |= names
-        todo += [_get(composed, name) for name in names]
+        todo += [value_at(composed, name) for name in names]
     return found
 
 
@@ -98,25 +99,32 @@ def _points(experiment: str, dimensions: int) -> Array:
     """Scrambled Sobol points in the unit cube, one a sample."""
     from scipy.stats import qmc
 
-    return qmc.Sobol(dimensions, seed=zlib.crc32(experiment.encode())).random(1024)
+    return qmc.Sobol(max(dimensions, 1), seed=zlib.crc32(experiment.encode())).random(1024)
 
 
-def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float], dict[str, Any]]:
+def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float | str], dict[str, Any]]:
     """Sample number ``index``: the values drawn, and under them the experiment's block with all its ``cases``."""
     composed = compose_chapter(chapter)
     varied = parameters(chapter, experiment)
-    point = _points(experiment, len(varied) + 1)[index]
-    values: dict[str, float] = {}
-    for share, (key, origin) in zip(point, varied.items(), strict=False):
-        low, high = origin.low or 0.0, origin.high or 0.0
-        wide = low > 0 and high / low >= 10
-        value = float(low * (high / low) ** share) if wide else float(low + (high - low) * share)
-        if isinstance(_get(composed, key), int):
-            value = round(value)
-        values[key] = value = float(f"{value:.6g}") if isinstance(value, float) else value
-        _set(composed, key, value)
+    numbers = {key: origin for key, origin in varied.items() if not origin.drawn}
+    words = {key: origin for key, origin in varied.items() if origin.drawn}
+    point = _points(experiment, len(numbers) + 1)[index]
+    values: dict[str, float | str] = {}
+    for share, (key, origin) in zip(point, numbers.items(), strict=False):
+        whole = isinstance(value_at(composed, key), int)
+        values[key] = within(float(share), origin.low or 0.0, origin.high or 0.0, whole)
+        set_value(composed, key, values[key])
+    for share, (key, origin) in zip(_points(f"words of {experiment}", len(words))[index], words.items(), strict=False):
+        values[key] = origin.words[int(share * len(origin.words))]
+        set_value(composed, key, values[key])
     values["seed"] = int(point[-1] * (1 << 16))
     return values, {**resolved_block(composed, experiment), "cases": experiment_cases(composed, experiment)}
+
+
+def within(share: float, low: float, high: float, whole: bool = False) -> float:
+    """The value at a share of a range, to six digits; a range over a decade is covered evenly in the logarithm."""
+    value = low * (high / low) ** share if low > 0 and high / low >= 10 else low + (high - low) * share
+    return round(value) if whole else float(f"{value:.6g}")
 
 
 def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]) -> dict[str, Any]:
@@ -308,7 +316,7 @@ def _kept(chapter: str, experiment: str, results: Path, only: int | None = None)
     found = {}
     for entry in _all(experiment, results):
         if only in (None, entry["index"]) and _is_present(chapter, experiment, entry):
-            found[entry["index"]] = entry
+            found[entry["index"]] = {**entry, "values": draw(chapter, experiment, entry["index"])[0]}
     return dict(sorted(found.items()))
 
 
@@ -360,7 +368,8 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
     from dexrepro.measures import binomial_interval
 
     claims: dict[str, Any] = {}
-    sampled = [(metrics_of(chapter, experiment, entry), entry["values"]) for entry in entries]
+    origins = parameters(chapter, experiment)
+    sampled = [(metrics_of(chapter, experiment, entry), _numeric(entry["values"], origins)) for entry in entries]
     for claim in chapters.load(chapter).claims_of(experiment):
         pairs = [
             (evaluation, values)
@@ -385,10 +394,15 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
             "boundary": _boundary(parameter, pairs),
         }  # fmt: skip
     failed = sum(any("error" in row for row in entry["cases"].values()) for entry in entries)
-    varied = {key: [o.low, o.high] for key, o in parameters(chapter, experiment).items()}
+    varied = {key: list(o.words) if o.drawn else [o.low, o.high] for key, o in origins.items()}
     seconds = sum(row.get("seconds", 0.0) for entry in entries for row in entry["cases"].values())
     return {"chapter": chapter, "experiment": experiment, "samples": len(entries), "failed": failed,
             "seconds": round(seconds, 1), "varied": varied, "claims": claims}  # fmt: skip
+
+
+def _numeric(values: Mapping[str, float | str], origins: Mapping[str, Provenance]) -> dict[str, float]:
+    """The values drawn, with the place of a word among its words."""
+    return {k: origins[k].words.index(v) if isinstance(v, str) else v for k, v in values.items()}
 
 
 def _boundary(parameter: str | None, pairs: Sequence[tuple[Any, Mapping[str, float]]]) -> list[list[float]] | None:
@@ -475,19 +489,3 @@ def _read(path: Path) -> Iterator[dict[str, Any]]:
             sound = isinstance(entry["index"], int) and entry["index"] >= 0 and isinstance(entry["values"], dict)
             if sound and all(isinstance(row["content"], str) for row in entry["cases"].values()):
                 yield entry
-
-
-def _get(node: Any, dotted: str) -> Any:
-    for part in dotted.split("."):
-        if isinstance(node, list) and part.isdigit():
-            node = node[int(part)]
-        else:
-            node = node.get(part) if isinstance(node, Mapping) else None
-    return node
-
-
-def _set(node: Any, dotted: str, value: Any) -> None:
-    *parents, last = (int(part) if part.isdigit() else part for part in dotted.split("."))
-    for part in parents:
-        node = node[part]
-    node[last] = value

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import gzip
 import os
 import shutil
@@ -75,6 +76,22 @@ def test_points_cover_the_ranges_evenly_and_lists_are_drawn_element_by_element(
     assert set(study.parameters("90", "decay")) == {"decay.start", "decay.gains.0", "decay.gains.1"}
     values, block = study.draw("90", "decay", 5)
     assert block["gains"] == [values["decay.gains.0"], values["decay.gains.1"]]
+    study.parameters.cache_clear()
+
+
+def test_words_are_drawn_evenly_and_leave_the_numbers_alone(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    start = study.parameters("90", "decay")["decay.start"]
+    before = [study.draw("90", "decay", index)[0] for index in range(16)]
+    words = study.Provenance("-", "chosen", "either", words=("exact", "euler"), drawn=True)
+    composed = study.compose_chapter("90")
+    composed["decay"]["integrator"] = "exact"
+    monkeypatch.setattr(study, "compose_chapter", lambda chapter: copy.deepcopy(composed))
+    monkeypatch.setattr(study, "provenance", lambda chapter: {"decay.start": start, "decay.integrator": words})
+    study.parameters.cache_clear()
+    drawn = [study.draw("90", "decay", index) for index in range(16)]
+    assert [block["integrator"] for _, block in drawn] == [values["decay.integrator"] for values, _ in drawn]
+    assert sorted(values.pop("decay.integrator") for values, _ in drawn) == ["euler"] * 8 + ["exact"] * 8
+    assert [values for values, _ in drawn] == before
     study.parameters.cache_clear()
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from dexrepro import chapters
+from dexrepro import baselines, chapters
+from dexrepro.claims import filled
 from dexrepro.config import compose_chapter, config_files, experiment_cases
 from dexrepro.kept import kept
 from dexrepro.study import robustness_of
@@ -26,13 +27,18 @@ def chapter_listing(number: str) -> dict[str, Any]:
     def listed() -> tuple[dict[str, Any], set[Path]]:
         home, folder, package = Path(chapters.__file__).parent, chapters.folders()[number], Path(__file__).parents[1]
         files = {*folder.rglob("*.py"), *home.glob("*.py"), *package.glob("*.py"), *config_files(number).values()}
-        return _listed(number), files | {Path(__file__)} | {path.parent for path in files}
+        files |= {Path(__file__), *(baselines.baseline_file(number, name) for name in chapters.names(number))}
+        files |= {path.parent for path in files}
+        return _listed(number), {path for path in files if path.exists()}
 
     return dict(kept(f"list {number} of {chapters.folders()[number]}", listed))
 
 
 def _listed(number: str) -> dict[str, Any]:
     chapter, composed = chapters.load(number), compose_chapter(number)
+    metrics = {
+        name: entry["value"] for item in baselines.stored(number).values() for name, entry in item.metrics.items()
+    }
     return {
         "chapter": number,
         "title": chapter.title,
@@ -66,7 +72,7 @@ def _listed(number: str) -> dict[str, Any]:
                 "id": erratum.id,
                 "equation": erratum.equation,
                 "kind": erratum.kind,
-                "summary": erratum.summary,
+                "summary": filled(erratum.summary, metrics),
                 "switch": erratum.switch,
             }
             for erratum in chapter.errata

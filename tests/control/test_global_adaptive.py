@@ -73,15 +73,29 @@ def test_with_the_exact_dynamics_the_lyapunov_function_never_increases():
     assert energy[-1] < 1e-5
 
 
-def test_virtual_acceleration_is_the_derivative_of_the_virtual_velocity():
-    plant = PlanarPlant()
-    law = control(plant, ExactDynamics(plant))
-    law.step = 1e-6
-    q, dq, alphas = plant.inverse(np.array([1.0, 0.05])), np.array([0.4, -0.7]), []
+class ThreeLinks:
+    """Kinematics of three unit links in a plane: one joint more than the task has axes."""
+
+    def position(self, q):
+        angles = np.cumsum(q)
+        return np.array([np.cos(angles).sum(), np.sin(angles).sum()])
+
+    def jacobian(self, q):
+        angles = np.cumsum(q)
+        return np.array([[-np.sin(angles)[j:].sum() for j in range(3)], [np.cos(angles)[j:].sum() for j in range(3)]])
+
+
+@pytest.mark.parametrize(
+    ("arm", "q", "dq"),
+    [(PlanarPlant(), [-0.95, 2.1], [0.4, -0.7]), (ThreeLinks(), [-1.2, 1.4, 0.9], [0.4, -0.7, 0.5])],
+)
+def test_virtual_acceleration_is_the_derivative_of_the_virtual_velocity(arm, q, dq):
+    n, h, q, dq, alphas = len(q), 1e-5, np.array(q), np.array(dq), []
+    law = GlobalAdaptiveControl(arm, None, bound=BOUND, position_gain=30.0, velocity_gain=np.full(n, 30.0), step=h)
     for k in range(3):
-        law(tip(plant, q + k * 1e-6 * dq, dq), ellipse(k * 1e-6))
+        law(tip(arm, q + k * h * dq, dq), ellipse(k * h))
         alphas.append(law.input.copy())
-    assert alphas[1][6:8] == pytest.approx((alphas[2][4:6] - alphas[0][4:6]) / 2e-6, rel=1e-5)
+    assert alphas[1][3 * n :] == pytest.approx((alphas[2] - alphas[0])[2 * n : 3 * n] / (2 * h), rel=1e-5, abs=1e-4)
 
 
 def test_an_adaptive_network_keeps_the_bound_and_removes_the_gravity_error():

@@ -87,7 +87,8 @@ ERRATA = (
     ),
     Erratum(
         "E7.16", "(7.33), (7.36)", "slip",
-        "T X' = V' has a dot too many, by print or by text extraction; literally the movement ends 6 cm short.",
+        "T X' = V' has a dot too many, by print or by text extraction; literally the movement ends "
+        "{fuzzy_generalisation.printed_kinematics.end_error:.0f} cm short.",
         "T X' = V, as in (7.3) and (7.12).", switch=f"{FUZZY}.task.printed=[kinematics]",
         evidence=(f"{FUZZY}.main.end_error", f"{FUZZY}.printed_kinematics.end_error"),
     ),

@@ -94,6 +94,6 @@ def joined(figure: Figure, plans: Any, sides: Any, row: int, column: int) -> Axe
 def board(axes: Axes, labels: bool = True) -> None:
     """Axes of the plan view: equal scales and the range that reactions need."""
     axes.set_aspect("equal")
-    axes.set(xlim=(0, 22), ylim=(-3.5, 12.5))
+    axes.set(xlim=(0, 22), ylim=(-3.5, 12.5), xticks=range(0, 21, 5))
     if labels:
         axes.set(xlabel="x [cm]", ylabel="y [cm]")

@@ -143,16 +143,13 @@ def _draw_limits(metrics: Any) -> Drawing:
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    rows = []
-    for case, values in metrics.items():
-        trial, _, law = case.partition("_")
-        if trial not in PRINTED:
-            continue
-        book = dict(zip(LAWS, PRINTED[trial])).get(law)
-        rows.append(
-            {"trajectory": trial[1:], "law": law.replace("_", " "), "RMSE [N]": values.get("rmse"), "book [N]": book}
-            | {"as measured [N]": values.get("rmse_measured"), "rise [s]": values.get("rise"),
-               "overshoot [-]": values.get("overshoot"), "settling [s]": values.get("settling"),
-               "twist [deg]": values.get("twist"), "object held": bool(values.get("finished"))}
-        )  # fmt: skip
+    book = {f"{trial}_{law}": value for trial, values in PRINTED.items() for law, value in zip(LAWS, values)}
+    rows = [
+        {"case": case.replace("_", " "), "RMSE [N]": values.get("rmse"), "book [N]": book.get(case),
+         "as measured [N]": values.get("rmse_measured"), "rise [s]": values.get("rise"),
+         "overshoot [-]": values.get("overshoot"), "settling [s]": values.get("settling"),
+         "twist [deg]": values.get("twist"), "object held": bool(values.get("finished"))}
+        for case, values in metrics.items()
+        if case in config.cases
+    ]  # fmt: skip
     return {"T1.B": pd.DataFrame(rows)}

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter2 import balloon_pair
-from dexrepro.chapters.chapter2.measures import shown
+from dexrepro.chapters.chapter2.measures import gains, shown
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 
 FIGURES = {
@@ -36,7 +36,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
         {
             "case": case,
             "law": (case if config.cases[case].law else config.cases[case].controller).replace("_", " "),
-            "gains": "tuned" if case.startswith("tuned") else "rescaled" if case == "soft_proposed" else "printed",
+            "gains": gains(config.cases[case], config),
             "k_o [N/m]": config.cases[case].stiffness,
             "regulation (2.8), (2.9)": "yes" if config.cases[case].regulation else "no",
             "RMSE on the line [N]": found["rmse_line"],

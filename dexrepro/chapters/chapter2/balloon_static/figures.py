@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dexrepro.chapters.chapter2 import balloon_pair
-from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings, changed
 
 FIGURES = {
     "2.9": Figure(
@@ -27,7 +27,9 @@ FILM = Film(
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    recordings = {case: run for case, run in recordings.items() if case.startswith("off")}
+    recordings = {
+        case: run for case, run in recordings.items() if changed(config.cases[case], config) <= {"discrepancy"}
+    }
     if len(recordings) < 2:
         return {}
     return {"2.9": _draw_setup(recordings, config), "2.10": _draw_paths(recordings, metrics, config)}

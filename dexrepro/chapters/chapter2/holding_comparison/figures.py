@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from dexrepro.chapters.chapter2.measures import shown
+from dexrepro.chapters.chapter2.measures import gains, shown
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
 
 FIGURES = {
@@ -44,7 +44,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
                 "trajectory": parameters.leader.trajectory,
                 "regulation (2.8)": "yes" if parameters.follower.regulation else "no",
                 "f_d [N]": parameters.desired_force,
-                "gains": GAINS.get(case.partition("_")[0], "printed"),
+                "gains": gains(parameters, config),
                 "realisation": parameters.realisation,
                 **{f"RMSE [{start}, 40] s [N]": found[f"rmse_{start}"] for start in (0, 5, 10)},
                 "RMSE [20, 40] s [N]": found["rmse"],
@@ -55,9 +55,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
             }
         )
     return {"T2.1": pd.DataFrame(rows)}
-
-
-GAINS = {"tuned": "tuned", "printed": "printed; time from the start", "total": "printed; time from the start"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
@@ -128,7 +125,7 @@ def _draw_settings(metrics: AllMetrics, config: Config) -> Drawing:
         "total\nderivative": ("printed_6", "total_8"),
     }
     settings = {name: pair for name, pair in settings.items() if set(pair) <= set(metrics)}
-    tuned = [case for case, parameters in config.cases.items() if case.startswith("tuned_") or parameters.law]
+    tuned = [case for case, its in config.cases.items() if its.law or gains(its, config) == "tuned"]
     figure, (left, right) = style.subplots(1, 2, height=2.6, width_ratios=(3, 2))
     place = np.arange(len(settings))
     for shift, index, key in ((-0.2, 0, "no_impedance"), (0.2, 1, "impedance")):

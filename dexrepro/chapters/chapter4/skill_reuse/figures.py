@@ -91,7 +91,8 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     rows = []
     for case, found in metrics.items():
         if case in config.cases:
-            gain = "common" if case.startswith("common") or case == "broad20" else "equal effective"
+            network = config.cases[case].law.network
+            gain = "none" if not network else "common" if network.gain == config.law.network.gain else "equal effective"
             rows.append({"case": case, "gain": gain, **{label: found.get(name) for name, label in COLUMNS.items()}})
     return {"T4.A": pd.DataFrame(rows)}
 

@@ -194,6 +194,9 @@ PARTS = {
 }
 
 
+LOST = 1e-2  # of the target: repeated updates no longer give the solution
+
+
 def update_operations(rows: int, columns: int, added: int) -> int:
     """Multiplications of the block update: four products of A or A^+ with m columns, d b, and the SVD of c."""
     return 5 * rows * columns * added + 6 * rows * added**2
@@ -227,11 +230,11 @@ def _measure_maps(frame: pd.DataFrame) -> Metrics:
 
 
 def _measure_drift(frame: pd.DataFrame) -> Metrics:
-    """Whether update and solution anew end further apart than a hundredth of the target.
+    """Whether update and solution anew end further apart than ``LOST``.
 
     The gap itself is amplified rounding: from one feature to the next it grows tenfold, on each machine another way.
     """
-    return {f"n{count}.lost": int(part.gap.iloc[-1] > 1e-2) for count, part in frame.groupby("kernels")}
+    return {f"n{count}.lost": int(part.gap.iloc[-1] > LOST) for count, part in frame.groupby("kernels")}
 
 
 def _measure_cost(frame: pd.DataFrame) -> Metrics:

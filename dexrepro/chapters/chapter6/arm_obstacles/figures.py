@@ -15,17 +15,17 @@ FIGURES = {
     "6.3": Figure(
         "The simulated scene from above: two old boxes (orange), the new one (blue), the learned path (grey) and the "
         "constrained one. The book shows a photograph of the same arrangement.",
-        "The learned path runs through the new box, the constrained one round it.",
+        "Boxes from above with the learned and the constrained path.",
     ),
     "6.4": Figure(
         "Simulated arm on the learned path at five instants (contacts off) and the smallest distance of the whole arm "
         "to each box. The book shows photographs.",
-        "On the learned path the arm enters the new box.",
+        "Five pictures of the arm among the boxes, and its distance to each over time, on the learned path.",
     ),
     "6.5": Figure(
         "Simulated arm on the constrained path at five instants and the smallest distance of the whole arm to each "
         "box.",
-        "On the constrained path the whole arm passes all three boxes.",
+        "Five pictures of the arm among the boxes, and its distance to each over time, on the constrained path.",
     ),
 }
 TABLES = {"T6.Sc": "Variants of the detour, the law and the contacts on the arm"}
@@ -56,11 +56,11 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         if case in recordings:
             figures[identifier] = _draw_run(recordings[case], metrics[case])
     if {"original", "constrained"} <= set(recordings):
-        figures["6.3"] = _draw_scene(recordings["original"], recordings["constrained"], config)
+        figures["6.3"] = _draw_scene(recordings["original"], recordings["constrained"], metrics, config)
     return figures
 
 
-def _draw_scene(original: Recording, constrained: Recording, config: Config) -> Drawing:
+def _draw_scene(original: Recording, constrained: Recording, metrics: AllMetrics, config: Config) -> Drawing:
     from dexrepro.report import style
 
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.0)
@@ -77,7 +77,8 @@ def _draw_scene(original: Recording, constrained: Recording, config: Config) -> 
         axes.annotate(text, spot, xytext=(shift, -2), textcoords="offset points", fontsize=7)
     axes.set(xlim=(0, image.shape[1]), ylim=(image.shape[0], 0))
     axes.axis("off")
-    style.title(figure, "The learned path crosses the new box, the constrained one goes round it")
+    before, after = (f"{100 * (metrics[case]['distance_new'] or 0.0):.1f}" for case in ("original", "constrained"))
+    style.title(figure, f"From arm to new box: {before} cm on the learned path, {after} cm on the constrained one")
     return figure
 
 

@@ -55,7 +55,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
             right.plot(time, error / np.array(edges), **style.LINES[name])
             if not bound.inside:
                 fallen.append(100 * (1 - value[-1]))
-        if case.startswith("asymmetric_outside"):
+        if not bound.inside and bound.lower is not None:
             close.plot(time, error / np.array(edges), label=label, **style.LINES[name])
     for axes in (right, close):
         axes.axhline(1, **style.LINES["reference"])

@@ -48,7 +48,7 @@ def draw_pictures(recording: Recording) -> Drawing:
 
     images = style.trimmed(recording.images)
     words = {"a": "grasp", "f": "release"}
-    figure, axes = style.subplots(2, 3, height=3.6)
+    figure, axes = style.subplots(2, 3, height=4.6)
     for (letter, instant), panel in zip(PICTURES.items(), axes.flat):
         panel.imshow(images[letter])
         panel.axis("off")

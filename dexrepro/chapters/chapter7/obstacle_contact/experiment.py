@@ -78,8 +78,9 @@ def measure(recording: Recording, config: Config) -> Metrics:
 
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Relative spread of the peak contact force over the impedances, with and without estimation."""
-    peaks = {
-        "estimated": [m["contact_peak"] or 0.0 for case, m in metrics.items() if not case.endswith("_plain")],
-        "plain": [m["contact_peak"] or 0.0 for case, m in metrics.items() if case.endswith("_plain")],
-    }
+    peaks: dict[str, list[float]] = {"estimated": [], "plain": []}
+    for case, values in metrics.items():
+        peaks["estimated" if config.cases[case].law.get("estimation", True) else "plain"].append(
+            values["contact_peak"] or 0.0
+        )
     return {f"{name}_spread": float(np.ptp(values) / np.mean(values)) for name, values in peaks.items() if any(values)}

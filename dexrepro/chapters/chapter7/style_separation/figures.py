@@ -15,7 +15,7 @@ FIGURES = {
         "(a) Style parameters of each coordinate, (b) shared by the three coordinates; open: worst reaction, red: "
         "number of reactions that touch the obstacle. (c) Singular values of the reactive forcing terms of each "
         "coordinate. Green: demonstrations whose shape differs between directions.",
-        "One style parameter a reaction is not enough for two obstacles; two a coordinate are.",
+        "Errors over the number of style parameters, for each coordinate and for all together, and singular values.",
     ),
 }
 TABLES = {"T7.A": "Reactions represented by a common basis and style parameters"}
@@ -60,7 +60,12 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     axes[2].set(xlabel="Component [-]", ylabel="Singular value [cm]", xticks=range(1, 7))
     axes[2].legend()
     style.panel(axes[2], "c", "singular values")
-    style.title(figure, "One style parameter is not enough for two obstacles, two of each coordinate are")
+    one, two = (f"{10 * numbers[f'mean{rank}']:.2g}" for rank in (1, 2))
+    style.title(
+        figure,
+        f"With one style parameter a coordinate reactions err by {one} mm and {numbers['collisions1']:.0f} of twelve "
+        f"touch, with two by {two} mm and {numbers['collisions2']:.0f} touch",
+    )
     return {"7.A": figure}
 
 

@@ -164,9 +164,8 @@ def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) 
         style.panel(axes, letter, name)
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=6)
-    style.title(
-        figure, "Under friction BFNN beats FNN and static $H_\\infty$, but not $H_\\infty$ with integral action"
-    )
+    errors = "; ".join(f"{label} {metrics[case]['early_x']:.2g}" for case, (label, _) in lines.items())
+    style.title(figure, f"RMS error in x under friction, 5 to 10 s [mm]: {errors}")
     return figure
 
 
@@ -218,7 +217,7 @@ def _draw_gains(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
             )  # fmt: skip
         for case, name in names.items():
             if case in metrics:
-                below = case.startswith("fuzzy")
+                below = config.cases[case].networks.kind == "fuzzy"
                 place = (metrics[case]["early_gain"], metrics[case][f"early_{letter}"])
                 side: Any = {"xytext": (-5, -5), "ha": "right", "va": "top"} if below else {"xytext": (4, 4)}
                 axes.annotate(name, place, textcoords="offset points", fontsize=6.5, **side)
