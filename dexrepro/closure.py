@@ -52,6 +52,11 @@ def sources(roots: Iterable[Name]) -> set[Path]:
     return {path for path in found if path is not None}
 
 
+def reaches(roots: Iterable[Name], name: Name) -> bool:
+    """Whether the roots can reach a name."""
+    return name in _reached(roots)
+
+
 def target(text: str) -> Name:
     """The module and the name that a ``_target_`` such as ``dexrepro.control.gravity_pd.GravityPD`` means."""
     parts = text.split(".")

@@ -15,11 +15,12 @@ from dexrepro import chapters
 from dexrepro.checks import check_values, is_number, is_whole, leaves
 from dexrepro.errors import InputError, nearest
 from dexrepro.kept import kept
+from dexrepro.physics.engine import ENGINES, is_installed
 
 if TYPE_CHECKING:  # Hydra is imported where it is needed: it takes as long as a whole command may
     from hydra.core.override_parser.types import Override
 
-SETTINGS = ("only", "case", "figure", "seed", "results", "workers", "case_timeout", "force", "quiet", "gui")
+SETTINGS = ("only", "case", "figure", "seed", "engine", "results", "workers", "case_timeout", "force", "quiet", "gui")
 
 
 def config_dir() -> Path:
@@ -292,12 +293,24 @@ def check_settings(composed: Mapping[str, Any]) -> None:
     scene = composed.get("scene")
     if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]*", name := str(scene.get("name"))):
         raise InputError(f"scene.name = {name} is not allowed: it names a folder; use letters, digits, '_' and '-'")
+    check_engine(composed["engine"])
     timeout = composed["case_timeout"]
     if timeout is not None and not (is_number(timeout) and 0 < timeout < math.inf):
         raise InputError(f"case_timeout = {timeout} is not allowed: it must be a number of seconds greater than 0")
     for key in ("force", "quiet", "gui"):
         if not isinstance(composed[key], bool):
             raise InputError(f"{key} = {composed[key]} is not allowed: it must be true or false")
+
+
+def check_engine(engine: Any) -> None:
+    """Refuse an engine that there is not, or not here."""
+    words = [engine] if engine is not None else list(ENGINES)
+    if not all(isinstance(word, str) and word in ENGINES for word in words):
+        raise InputError(f"engine = {engine} is not allowed: it must be one of {', '.join(ENGINES)}")
+    if not any(map(is_installed, words)):
+        raise InputError(
+            f"engine = {words[0]} needs {ENGINES[words[0]]}, which is not installed here: pip install {words[-1]}"
+        )
 
 
 def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, dict[str, Any]]:

@@ -325,6 +325,11 @@ def _all(experiment: str, results: Path) -> Iterator[dict[str, Any]]:
         yield from _read(_lines(summary_file(experiment, results, update)))
 
 
+def shipped_samples(experiment: str) -> list[dict[str, Any]]:
+    """The samples that are shipped, whatever simulation made them."""
+    return list(_read(_lines(summary_file(experiment, Path(), shipped=True))))
+
+
 def _folder(results: Path) -> Path:
     return results / "studies"
 

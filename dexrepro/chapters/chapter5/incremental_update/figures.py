@@ -58,7 +58,7 @@ def _draw_mechanism(recording: Recording) -> Drawing:
     total = frame.filter(regex=r"^(old|modified|new)\d+$").sum(axis=1)
     grid[1, 0].plot(instants, total, **style.LINES["book"])
     grid[1, 0].plot(instants, frame["phase0"], **style.LINES["reference"])
-    grid[1, 0].annotate("sum of all features = phase s", (0.3, 0.75), xycoords="axes fraction", fontsize=6.5)
+    grid[1, 0].annotate("all features sum\nto the phase s", (0.95, 0.6), xycoords="axes fraction", ha="right")
     for axes in grid[1]:
         axes.set_xlabel("Time [s]")
     for axes in grid[:, 0]:

@@ -19,12 +19,12 @@ FIGURES = {
     ),
     "6.4": Figure(
         "Simulated arm on the learned path at five instants (contacts off) and the smallest distance of the whole arm "
-        "to each box. The book shows photographs.",
+        "to each box, below 15 cm. The book shows photographs.",
         "Five pictures of the arm among the boxes, and its distance to each over time, on the learned path.",
     ),
     "6.5": Figure(
         "Simulated arm on the constrained path at five instants and the smallest distance of the whole arm to each "
-        "box.",
+        "box, below 15 cm.",
         "Five pictures of the arm among the boxes, and its distance to each over time, on the constrained path.",
     ),
 }
@@ -105,11 +105,13 @@ def _draw_run(run: Recording, numbers: Metrics) -> Drawing:
         axes.plot(run.time, 100 * run[f"distance_{name}"], label=f"{name} box", **style.LINES[line])
     axes.axhline(0, **style.LINES["reference"])
     axes.set(xlabel="Time [s]", ylabel="Distance of arm [cm]")
-    axes.legend(loc="upper center")
+    axes.set_ylim(top=15)
+    axes.legend(loc="upper center", ncols=3, bbox_to_anchor=(0.5, 1.2))
     closest = {name: 100 * float(numbers[f"distance_{name}"] or 0) for name in BOXES}
     if closest["new"] < 0:
         text = f"On the learned path the arm runs {-closest['new']:.1f} cm into the new box"
     else:
-        text = f"On the constrained path the whole arm clears the boxes by {min(closest.values()):.1f} cm or more"
+        least = style.at_least(min(closest.values()), 1)
+        text = f"On the constrained path the whole arm clears the boxes by {least} cm or more"
     style.title(figure, text)
     return figure

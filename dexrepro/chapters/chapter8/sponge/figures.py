@@ -92,7 +92,9 @@ def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) 
     instants = sorted((float(name.removeprefix("at_").removesuffix("s")), name) for name in run.images)
     figure, row = style.subplots(1, len(instants), height=1.8)
     for axes, (instant, name) in zip(np.atleast_1d(row), instants):
-        axes.imshow(run.images[name])
+        image = run.images[name]
+        top = 0.1 if instant == instants[0][0] else 0.0  # the others are near views of where it touches
+        axes.imshow(image[round(top * len(image)) : round((top + 0.78) * len(image))])
         axes.set_axis_off()
         pressed = depth[np.abs(run.time - instant).argmin()]
         axes.set_title(f"{instant:g} s" + (f": {pressed:.0f} mm deep" if pressed else ""))

@@ -250,7 +250,8 @@ def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawi
         style.panel(axes, letter, name)
     worst = 100.0 * (metrics.get("summary", {}).get("worst_gain_error") or float("nan"))
     style.title(
-        figure, f"The learned gain is optimal within {worst:.1f} % from {stiffness[0]:g} to {stiffness[-1]:g} N/m"
+        figure,
+        f"The learned gain is optimal within {style.at_most(worst, 1)} % for {stiffness[0]:g} to {stiffness[-1]:g} N/m",
     )
     return figure
 
