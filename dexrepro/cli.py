@@ -435,12 +435,12 @@ def crosscheck_command(options: argparse.Namespace) -> int:
     for number in numbers:
         for item in crosscheck.run(number, only, results, workers):
             crosscheck.keep([item], target)
-            matter = [entry for entry in item.metrics if entry.matters]
+            known = [entry for entry in item.metrics if entry.spread]
             turned = [f"{key} {' under PyBullet, '.join(item.claims[key])} under MuJoCo" for key in item.turned]
             out.print(
                 f"{item.experiment}: {item.compared} numbers, {len(item.metrics)} outside their tolerance, "
-                f"{len(matter)} also outside a study's range; {len(item.claims)} claims, {len(turned)} turn"
-                + "".join(f"\n  {text}" for text in turned),
+                f"{sum(entry.matters for entry in known)} of the {len(known)} that a study has outside its range, too; "
+                f"{len(item.claims)} claims, {len(turned)} turn" + "".join(f"\n  {text}" for text in turned),
                 markup=False,
             )
     out.print(str(target), markup=False)

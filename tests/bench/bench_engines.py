@@ -69,7 +69,8 @@ def test_time_of_a_step(scene, capsys: pytest.CaptureFixture[str]) -> None:
             scene().close()
             best[word] = min(best[word], (time.perf_counter() - begin) / STEPS)
     engine.use(engine.default())
+    first, *_, last = best.values()
     spent = "   ".join(f"{engine.ENGINES[word]} {1e6 * value:6.1f} us" for word, value in best.items())
     with capsys.disabled():
-        print(f"\n{scene.__name__:11s} {spent}   {list(best.values())[0] / list(best.values())[-1]:.2f} times as fast")
+        print(f"\n{scene.__name__:11s} {spent}   {first / last:.2f} times as fast")
     assert all(np.isfinite(value) for value in best.values())
