@@ -12,6 +12,7 @@ from dexrepro.case import generator, live
 from dexrepro.chapters.chapter5 import crossing, letters
 from dexrepro.chapters.chapter5.obstacle_crossing import experiment as obstacle_crossing
 from dexrepro.chapters.chapter7 import skills
+from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.errors import InputError
 
@@ -112,3 +113,36 @@ def test_reaches_that_do_not_begin_and_end_together_get_one_sentence(change: str
     config = configured("7", "reaching_demonstrations", "corrected", "demonstrations=reach*.csv")
     with pytest.raises(InputError, match=sentence):
         skills.demonstrate(config)
+
+
+def write_reach(name: str, aside: float, goal: tuple[float, float] = (20.0, 9.0)) -> None:
+    share = np.linspace(0, 1, 80)
+    progress = (share**3 * (10 - 15 * share + 6 * share**2))[:, None]
+    path = (2.3, 0, 0) + progress * (goal[0] - 2.3, goal[1], 0) + np.sin(np.pi * share)[:, None] ** 3 * (0, aside, 2)
+    np.savetxt(name, np.column_stack([share, path]), delimiter=",")
+
+
+def test_recorded_reactions_are_learned_in_the_place_of_the_synthetic_ones() -> None:
+    write_reach("left.csv", 6.0)
+    config = configured("7", "reactive_learning", "frozen", "reactions={close_low_left: left.csv}", "draws=1")
+    recording = reactive_learning.simulate(config, lambda purpose: generator(0, "reactive_learning", purpose))
+    demonstrated = recording["demonstrations"].reshape(len(recording.time), 3, -1, 3)
+    assert np.ptp(demonstrated[:, 0], axis=1).max() == pytest.approx(0, abs=1e-9)  # one file takes every turn
+    assert np.ptp(demonstrated[:, 1], axis=1).max() > 0.01
+    share = np.linspace(0, 1, len(recording.time))
+    assert demonstrated[len(share) // 2, 0, 0, 1] == pytest.approx(4.5 + 6.0, abs=0.1)
+    assert reactive_learning.measure(recording, config)["rmse5"] < 0.5
+
+
+@pytest.mark.parametrize(
+    ("name", "goal", "sentence"),
+    [
+        ("close_low_lift", (20.0, 9.0), "reactions: unknown condition 'close_low_lift': did you mean 'close_low_left'"),
+        ("close_low_left", (30.0, 9.0), r"reactions.close_low_left: they go from \(2.3, 0\) to \(30, 9\) cm instead"),
+    ],
+)
+def test_a_reaction_that_cannot_be_used_gets_one_sentence(name: str, goal: tuple[float, float], sentence: str) -> None:
+    write_reach("left.csv", 6.0, goal)
+    config = configured("7", "reactive_learning", "frozen", f"reactions={{{name}: left.csv}}")
+    with pytest.raises(InputError, match=sentence):
+        reactive_learning.taught(config)
