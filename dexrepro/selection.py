@@ -13,7 +13,15 @@ from dexrepro.config import as_written, check_overrides, compose_chapter, forced
 from dexrepro.errors import InputError, nearest
 from dexrepro.plan import select
 
-FILES = ("demonstrations", "csv", "file", "path")  # keys whose values are names of files
+FILES = (
+    "demonstrations",
+    "csv",
+    "file",
+    "path",
+    "files",
+    "obstacle_files",
+    "block_file",
+)  # keys whose values are names of files
 
 
 class Selection(NamedTuple):
