@@ -3,7 +3,8 @@
 A tolerance says how sensitive a number is: ``update`` reruns each case with the initial state moved by each of
 ``PERTURBATIONS``, and experiments of seconds also with the arithmetic of other machines (``arithmetics``), and keeps
 ``rtol = max(1e-3, 10 x the largest relative change)``, likewise ``atol`` for metrics near zero. Counts are exact unless
-a rerun changes them. A tolerance with a "reason" was set by hand and survives updates.
+a rerun changes them. A "reason" says by what other arithmetic a metric moves farther than by another initial state; one
+in other words was set by hand with its tolerance, and survives updates.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ SECONDS = 60.0  # of wall time of all cases, up to which an experiment is run wi
 RTOL = 1e-3
 ATOL = 1e-9
 NEAR_ZERO = 1e-6
+MEASURED = "the same code gave "  # begins a reason that an update has measured, and may renew
 TABLE = 0.05  # by which a number of a table may change where no metric of its digits is more sensitive
 
 
@@ -304,10 +306,14 @@ def update_chapter(
     new: dict[str, Baseline] = {}
     for plan, *perturbed in zip(plans, *moved, strict=True):
         metrics, *disturbed = (read_json(p.folder / "metrics.json") for p in (plan, *perturbed))
-        disturbed += elsewhere.get(plan.experiment, [])
-        stored = old[plan.experiment].metrics
+        stored, other = old[plan.experiment].metrics, elsewhere.get(plan.experiment, {})
         entries = {
-            name: _entry(value, [other.get(name) for other in disturbed], stored.get(name))
+            name: _entry(
+                value,
+                [moved.get(name) for moved in disturbed],
+                {text: found.get(name) for text, found in other.items()},
+                stored.get(name),
+            )
             for name, value in metrics.items()
         }
         verdicts = {claim["id"]: claim["verdict"] for claim in read_json(plan.folder / "claims.json")}
@@ -334,39 +340,53 @@ def update_chapter(
 
 
 def arithmetics() -> tuple[dict[str, str], ...]:
-    """Environments in which the last bits differ: an old processor's kernels of BLAS, numpy and libm; two threads."""
+    """Environments that change the last bits: an old processor's BLAS, numpy and libm; another BLAS and two threads."""
     import numpy as np
+    from threadpoolctl import threadpool_info
 
     vectors = np.show_config(mode="dicts")["SIMD Extensions"].get("found", [])
     old = {"NPY_DISABLE_CPU_FEATURES": " ".join(vectors), "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"}
-    return {"OPENBLAS_CORETYPE": "Prescott", **old}, {"OPENBLAS_CORETYPE": "Haswell", BLAS_THREADS: "2"}
+    here = {library.get("architecture") for library in threadpool_info()}
+    wide = "SkylakeX" if here == {"Haswell"} and any("AVX512" in name for name in vectors) else "Haswell"
+    return {"OPENBLAS_CORETYPE": "Prescott", **old}, {"OPENBLAS_CORETYPE": wide, BLAS_THREADS: "2"}
 
 
 def _run_elsewhere(
     chapter: str, plans: Sequence[Plan], results: Path, workers: int | None
-) -> dict[str, list[dict[str, Any]]]:
-    """Metrics of the experiments that run in seconds, by experiment, with the arithmetic of each other machine."""
+) -> dict[str, dict[str, dict[str, Any]]]:
+    """Metrics of the experiments that run in seconds, by experiment and by the arithmetic of another machine."""
     short = [p.experiment for p in plans if read_json(p.folder / "run.json")["wall"] < SECONDS]
-    found: dict[str, list[dict[str, Any]]] = {name: [] for name in short}
+    found: dict[str, dict[str, dict[str, Any]]] = {name: {} for name in short}
     for number, environment in enumerate(arithmetics() if short else ()):
         there = results.absolute() / ".cache" / f"arithmetic{number}"
         line = [sys.executable, "-m", "dexrepro", "run", f"chapter={chapter}", f"only=[{','.join(short)}]"]
         line += [f"results={there}", *([f"workers={workers}"] if workers else [])]
         done = subprocess.run(line, env=os.environ | environment, capture_output=True, encoding="utf-8", check=False)
+        text = ", ".join(f"{key}={value}" for key, value in environment.items())
         if done.returncode:
-            texts = " ".join(f"{key}={value}" for key, value in environment.items())
-            raise InputError(f"with {texts}: {' '.join(done.stderr.split())}")
+            raise InputError(f"with {text}: {' '.join(done.stderr.split())}")
         for name in short:
-            found[name].append(read_json(there / f"chapter{chapter}" / name / "metrics.json"))
+            found[name][text] = read_json(there / f"chapter{chapter}" / name / "metrics.json")
     return found
 
 
-def _entry(value: float | None, disturbed: Sequence[float | None], stored: Mapping[str, Any] | None) -> dict[str, Any]:
-    if stored and stored.get("reason"):
+def _entry(
+    value: float | None,
+    disturbed: Sequence[float | None],
+    elsewhere: Mapping[str, float | None],
+    stored: Mapping[str, Any] | None,
+) -> dict[str, Any]:
+    """disturbed: values with a moved initial state; elsewhere: those with the arithmetic of other machines, by name."""
+    if stored and not stored.get("reason", MEASURED).startswith(MEASURED):
         return {**stored, "value": value}
-    entry = _fresh_entry(value, disturbed)
+    entry = _fresh_entry(value, [*disturbed, *elsewhere.values()])
     if stored and agrees(value, stored):  # a sensitivity once seen remains
         entry |= {kind: max(entry[kind], stored[kind]) for kind in ("rtol", "atol")}
+    moved = {text: other for text, other in elsewhere.items() if not agrees(other, _fresh_entry(value, disturbed))}
+    if moved:
+        entry["reason"] = MEASURED + "; ".join(f"{other:.6g} with {text}" for text, other in moved.items())
+    elif stored and "reason" in stored and agrees(value, stored):
+        entry["reason"] = stored["reason"]
     return entry
 
 

@@ -1,4 +1,4 @@
-"""The command line: dexrepro run, list, check, draw, report, render, study, new, diff, completion; each is thin."""
+"""The command line; each command is thin (``dexrepro --help`` names them)."""
 
 from __future__ import annotations
 
@@ -122,6 +122,10 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument("--update", action="store_true", help="run, perturb, and store new baselines")
     check.add_argument("--accept", nargs="+", default=[], metavar="ID", help="claims whose verdict may change")
     check.set_defaults(function=check_command)
+
+    cross = commands.add_parser("crosscheck", parents=[selection], help="run the book under MuJoCo, too, and compare")
+    cross.add_argument("--update", action="store_true", help="renew the table that is shipped")
+    cross.set_defaults(function=crosscheck_command)
 
     draw = commands.add_parser("draw", parents=[selection], help="draw again from files, nothing simulated")
     draw.set_defaults(function=draw_command)
@@ -396,6 +400,28 @@ def _print_check(report: ChapterReport) -> None:
     lines += [f"out of date: {text}" for text in report.outdated]
     for line in lines:
         out.print(f"  {line}", markup=False)
+
+
+def crosscheck_command(options: argparse.Namespace) -> int:
+    """Run what simulates arms under the other engine; say which numbers and verdicts differ."""
+    from dexrepro import crosscheck
+    from dexrepro.selection import selected
+
+    numbers, only, results, workers, _ = selected(options.selection)
+    target = crosscheck.table(results, options.update)
+    for number in numbers:
+        for item in crosscheck.run(number, only, results, workers):
+            crosscheck.keep([item], target)
+            matter = [entry for entry in item.metrics if entry.matters]
+            turned = [f"{key} {' under PyBullet, '.join(item.claims[key])} under MuJoCo" for key in item.turned]
+            out.print(
+                f"{item.experiment}: {item.compared} numbers, {len(item.metrics)} outside their tolerance, "
+                f"{len(matter)} also outside a study's range; {len(item.claims)} claims, {len(turned)} turn"
+                + "".join(f"\n  {text}" for text in turned),
+                markup=False,
+            )
+    out.print(str(target), markup=False)
+    return OK
 
 
 def draw_command(options: argparse.Namespace) -> int:

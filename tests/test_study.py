@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
+from scipy import stats
 
 from dexrepro import study
-from dexrepro.claims import Claim, less
+from dexrepro.claims import LOOKS, Claim, less, robustness
 from dexrepro.errors import InputError
 from dexrepro.pool import Pool
 from dexrepro.storage import read_json
@@ -283,3 +284,19 @@ def test_a_study_in_a_checkout_changes_no_tracked_file(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert list(tmp_path.glob("results/studies/*.json"))
     assert subprocess.run([*git, "status", "--porcelain"], capture_output=True, text=True, check=True).stdout == ""
+
+
+@pytest.mark.parametrize(("share", "wrong"), [(0.85, ("robust", "fragile")), (0.80, ("robust",)), (0.90, ("fragile",))])
+def test_a_word_of_a_study_is_wrong_in_at_most_one_of_twenty(share: float, wrong: tuple[str, ...]) -> None:
+    """Exact: the chance of every count of draws that held, from look to look, where a claim holds in ``share``."""
+    alive, words, before = np.ones(1), dict.fromkeys(("robust", "fragile", "open"), 0.0), 0
+    for look in LOOKS:
+        alive = np.convolve(alive, stats.binom.pmf(np.arange(look - before + 1), look - before, share))
+        before = look
+        for holds, chance in enumerate(alive):
+            word = robustness(holds, look)
+            if word != "open" or look == LOOKS[-1]:
+                words[word] += chance
+                alive[holds] = 0.0
+    assert sum(words.values()) == pytest.approx(1)
+    assert sum(words[word] for word in wrong) < 0.05, words

@@ -141,6 +141,28 @@ def test_switch_exceeds_one_below_the_smallest_admissible_shape():
     assert Switch(5.0, 20.0, 1.0, True).component(sizes, 5.0, 20.0).max() > 1.0
 
 
+def test_the_square_is_of_the_argument_or_of_the_exponential():
+    """Both readings of Eq. (4.26): (1 - s) times exp((s / w)^2) or exp(s / w)^2, s = (Xi^2 - a^2) / (b^2 - a^2)."""
+    sizes = np.linspace(5.0, 20.0, 7)
+    share = (sizes**2 - 25.0) / 375.0
+    for shape in (0.8, 2.0):
+        inside, outside = (Switch(5.0, 20.0, shape, way).component(sizes, 5.0, 20.0) for way in (False, True))
+        assert inside == pytest.approx((1 - share) * np.exp(share**2 / shape**2))
+        assert outside == pytest.approx((1 - share) * np.exp(share / shape) ** 2)
+    mixed = [7.0, -3.0, 12.0]
+    assert Switch(5.0, 20.0)(mixed) == pytest.approx(np.prod(Switch(5.0, 20.0).component([7.0, 12.0], 5.0, 20.0)))
+
+
+def test_a_reset_law_starts_its_bound_anew():
+    plant = PlanarPlant()
+    law, told = control(plant, None), tip(plant, plant.inverse(np.array([1.0, 0.05])), np.array([0.4, -0.7]))
+    first, second = law(told, ellipse(0.0)).torque, law(told, ellipse(0.0)).torque
+    law.reset(told)
+    assert np.array_equal(law(told, ellipse(0.0)).torque, first)
+    assert np.array_equal(law.usage, BOUND.usage(law.error, BOUND.nu(0.0))), "at t = 0"
+    assert not np.array_equal(second, first)
+
+
 def test_switch_scales_with_the_farthest_node():
     switch = Switch(0.2, 0.6, node_scaled=True)
     assert switch([1.0], radius=10.0) == 1.0

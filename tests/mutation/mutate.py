@@ -4,7 +4,7 @@
 
 Each argument is a folder or a module of dexrepro/. A change turns a sign, an operator, a comparison, a factor or a
 function, drops an assignment, or swaps two that write to one place; parameters' defaults, messages and annotations are
-left alone. Tests are collected once; for each change those run that call the changed function, those beside it first,
+left alone. The tests beside a folder are collected once; for each change those run that call the changed function,
 shortest first, in a process of their own. What survives is printed, unless ``accepted.txt`` says of it, or of its line,
 why it changes nothing; the exit status is 1 where the share killed is below ``--least``.
 """
@@ -39,8 +39,6 @@ Mutant = tuple[int, str, CodeType]
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 PACKAGE = str(ROOT / "dexrepro")
-LIBRARY = ("control", "primitives", "networks", "robots", "physics", "humans")
-FAR = 1.0  # time [s] of a test of another folder that is still run
 OPTIONS = ("-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not slow")
 SCORE = ROOT / "docs/mutation.md"
 HEAD = """# Mutation score of the library
@@ -219,8 +217,8 @@ def key_of(code: CodeType) -> Key:
 class Survey:
     """A plugin of pytest: collects tests once, and runs for each mutant those that call the changed function."""
 
-    def __init__(self, modules: list[tuple[Path, list[Mutant]]], folder: Path) -> None:
-        self.modules, self.folder = modules, folder
+    def __init__(self, modules: list[tuple[Path, list[Mutant]]]) -> None:
+        self.modules = modules
         self.at_import: set[Key] = set()
         self.survived: dict[tuple[Path, int], str] = {}  # path and number of a mutant: "import" where that may kill it
         self.failing: list[str] = []
@@ -247,12 +245,10 @@ class Survey:
                 function = changed(old, code)
                 key = None if function is None else key_of(function)
                 tests = sorted(
-                    (self.folder not in item.path.parents, duration, k)
-                    for k, (item, (passed, duration, called)) in enumerate(zip(session.items, runs))
-                    if passed and key in called and (self.folder in item.path.parents or duration < FAR)
+                    (duration, k) for k, (passed, duration, called) in enumerate(runs) if passed and key in called
                 )
-                limit = 5 + 4 * sum(duration for _, duration, _ in tests)
-                items = [session.items[k] for *_, k in tests]
+                limit = 5 + 4 * sum(duration for duration, _ in tests)
+                items = [session.items[k] for _, k in tests]
                 if key is None or not live.get(key):
                     self.survived[path, number] = "import"
                 elif not items or in_a_process(lambda: _hold(live[key], function, items), limit):  # noqa: B023
@@ -293,13 +289,11 @@ def _hold(functions: list[FunctionType], code: CodeType, items: list[pytest.Item
 def survey(folder: str, modules: list[tuple[Path, list[Mutant]]]) -> tuple[list[str], dict[tuple[Path, int], str]]:
     """Tests that fail as they are, and the mutants of modules of one folder that no test notices."""
     beside = ROOT / "tests" / folder
-    places = [str(ROOT / "tests" / name) for name in dict.fromkeys([folder, *LIBRARY])]
-
-    plugin = Survey(modules, beside)
+    plugin = Survey(modules)
 
     def work() -> object:
         plugin.begin()
-        pytest.main([*OPTIONS, *places], plugins=[plugin])
+        pytest.main([*OPTIONS, str(beside)], plugins=[plugin])
         return plugin.failing, plugin.survived
 
     failing, survived = in_a_process(work, 1e6)
@@ -336,10 +330,12 @@ def main() -> int:
     os.chdir(ROOT)
     accepted = {line.rpartition("  # ")[0] for line in (HERE / "accepted.txt").read_text("utf-8").splitlines()}
     scores: dict[str, tuple[int, int, int]] = {}
-    for place in options.places:
-        at = ROOT / "dexrepro" / place
+    for folder in dict.fromkeys(Path(place).parts[0] for place in options.places):
         modules, equivalent = [], {}
-        for path in sorted(at.rglob("*.py")) if at.is_dir() else [at.with_suffix(".py")]:
+        places = [ROOT / "dexrepro" / place for place in options.places if Path(place).parts[0] == folder]
+        for path in [
+            p for at in places for p in (sorted(at.rglob("*.py")) if at.is_dir() else [at.with_suffix(".py")])
+        ]:
             relative = path.relative_to(ROOT / "dexrepro")
             draw = random.Random(str(relative))
             chosen = [mutant for mutant in mutants(path) if draw.random() < options.share]
@@ -347,7 +343,7 @@ def main() -> int:
                     if not {f"{relative}: {text}", f"{relative}: {text.partition('  [')[0]}"} & accepted]  # fmt: skip
             modules.append((path, left))
             equivalent[path] = len(chosen) - len(left)
-        failing, survived = survey(Path(place).parts[0], modules)
+        failing, survived = survey(folder, modules)
         for test in failing:
             print(f"left out, failing as it is: {test}")
         for path, found in modules:

@@ -8,13 +8,13 @@ from __future__ import annotations
 import zlib
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array
 from dexrepro.chapters.demonstrations import recorded
-from dexrepro.config import compose_chapter
 from dexrepro.control.contract import printed_forms
 from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config
@@ -136,7 +136,8 @@ def with_recorded_reactions(config: Config, reactions: Array) -> Array:
 def moved_scene(start: ArrayLike, goal: ArrayLike) -> str:
     """Overrides that take the book's scene to another way (2,), (2,) [cm]: the obstacles stand at the same share of
     it, and are smaller where it is short."""
-    scene = Config.of(compose_chapter("7")["shared"]["scene"])
+    configuration = import_module("dexrepro.config")  # by name: what words a sentence is no part of a case's key
+    scene = Config.of(configuration.compose_chapter("7")["shared"]["scene"])
     old, new = (np.array(ends, dtype=float) @ (1, 1j) for ends in ((scene.start, scene.goal), (start, goal)))
     turn = (new[1] - new[0]) / (old[1] - old[0])
     places = {

@@ -8,6 +8,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter6 import plane
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
 from .experiment import lies_inside
@@ -51,8 +52,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "book" not in recordings:
         return {}
-    from dexrepro.report import style
-
     lines = {name: frame.to_numpy() for name, frame in recordings["book"].frames.items() if name != "groups"}
     numbers, settings = metrics["book"], config.cases["book"]
     figures = {}
