@@ -24,7 +24,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import stats
 
 from dexrepro import baselines, chapters
 from dexrepro.arrays import Array
@@ -36,7 +35,6 @@ from dexrepro.claims import LOOKS, OPEN, Claim, robustness
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Metrics
-from dexrepro.measures import binomial_interval
 from dexrepro.plan import content_of
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.provenance import Provenance, provenance
@@ -99,7 +97,9 @@ def _references(composed: Mapping[str, Any], node: Any) -> set[str]:
 @cache
 def _points(experiment: str, dimensions: int) -> Array:
     """Scrambled Sobol points in the unit cube, one a sample."""
-    return stats.qmc.Sobol(max(dimensions, 1), seed=zlib.crc32(experiment.encode())).random(1024)
+    from scipy.stats import qmc
+
+    return qmc.Sobol(max(dimensions, 1), seed=zlib.crc32(experiment.encode())).random(1024)
 
 
 def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float | str], dict[str, Any]]:
@@ -370,6 +370,8 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
 
     Only samples count whose cases all ran; "undefined" says in how many a metric was undefined, where the claim fails.
     """
+    from dexrepro.measures import binomial_interval
+
     claims: dict[str, Any] = {}
     origins = parameters(chapter, experiment)
     sampled = [(metrics_of(chapter, experiment, entry), _numeric(entry["values"], origins)) for entry in entries]
@@ -477,7 +479,9 @@ def _most_influential(margins: Array, values: Sequence[Mapping[str, float]]) -> 
 
 
 def _standard_ranks(rows: Array) -> Array:
-    ranks = stats.rankdata(rows, axis=1)
+    from scipy.stats import rankdata
+
+    ranks = rankdata(rows, axis=1)
     return (ranks - ranks.mean(axis=1, keepdims=True)) / ranks.std(axis=1, keepdims=True)
 
 
