@@ -17,10 +17,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-
 if TYPE_CHECKING:
     import matplotlib.figure
+    import numpy as np
     import pandas as pd
     from numpy.typing import NDArray
 

@@ -123,7 +123,7 @@ def _of_cases(plans: list[Plan], wanted: str | Sequence[str] | None) -> list[Pla
     """The plans for some of their cases, by name or pattern: a result of its own, which stands for no whole one."""
     if wanted is None:
         return plans
-    patterns = [wanted] if isinstance(wanted, str) else list(map(str, wanted))
+    patterns = [str(name) for name in (wanted if isinstance(wanted, list) else [wanted])]
     names = [job.case for plan in plans for job in plan.jobs]
     for pattern in patterns:
         if not fnmatch.filter(names, pattern):
@@ -229,7 +229,7 @@ def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[
     experiments = chapters.load(chapter).experiments
     names = [experiment.name for experiment in experiments]
     wanted = names if only is None else [only] if isinstance(only, str) else list(only)
-    everywhere = {e.name for number in chapters.numbers() for e in chapters.load(number).experiments}
+    everywhere = {name for number in chapters.numbers() for name in chapters.names(number)}
     for name in wanted:
         if name not in names and (name not in everywhere or not set(wanted) & set(names)):
             raise InputError(f"unknown experiment '{name}' in chapter {chapter}: {nearest(str(name), names)}")

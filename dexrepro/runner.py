@@ -25,7 +25,6 @@ from dexrepro.experiment import Config, Experiment, Metrics
 from dexrepro.plan import PARTIAL, Job, Plan, import_anew, own_digest, presentation
 from dexrepro.pool import COMPLETES, Failure, Pool, start_method
 from dexrepro.progress import Progress, Silent
-from dexrepro.recordings import load_recording, save_recording
 from dexrepro.storage import (
     claimed,
     copy,
@@ -111,6 +110,7 @@ def execute(job: Job) -> CaseEntry:
     """Simulate, measure and store one case."""
     from dexrepro.physics import engine
     from dexrepro.physics.world import World
+    from dexrepro.recordings import save_recording
 
     World.live = job.gui
     engine.use(job.config.get("engine", engine.REFERENCE))
@@ -226,6 +226,7 @@ def _of_some_cases(differs: Sequence[str]) -> bool:
 
 def present(chapter: str, experiment: Experiment, folder: Path) -> None:
     """Numbers over several cases, claims, tables and figures of a result folder, from its files alone."""
+    from dexrepro.recordings import load_recording
     from dexrepro.report import style
 
     run = read_json(folder / "run.json")

@@ -8,6 +8,7 @@ import pandas as pd
 from dexrepro.arrays import Array
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Metrics, Recording, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report import style
 
 from .experiment import BOXES, TOP
 
@@ -61,8 +62,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_scene(original: Recording, constrained: Recording, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.0)
     image = constrained.images["top"]
     axes.imshow(image)
@@ -90,8 +89,6 @@ def _pixels(points: Array, shape: tuple[int, ...]) -> Array:
 
 
 def _draw_run(run: Recording, numbers: Metrics) -> Drawing:
-    from dexrepro.report import style
-
     shots = style.trimmed({name: run.images[name] for name in sorted(run.images) if name != "top"})
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 3.5))
     grid = figure.add_gridspec(2, len(shots), height_ratios=[1.1, 1.3])

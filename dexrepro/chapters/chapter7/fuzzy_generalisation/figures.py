@@ -10,6 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "7.9": Figure(
@@ -28,7 +29,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if "main" not in recordings:
         return {}
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     recording, case = recordings["main"], config.cases.main
     task, old = skills.Reach(case.task.start, case.task.goal), skills.reach(case)
@@ -79,7 +79,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 def draw_ordinary(plan: Any, side: Any, recordings: Recordings, case: Config, obstacle: Any) -> None:
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     task, old = skills.Reach(case.task.start, case.task.goal), skills.reach(case)
     curves = {"old task": ("main", "old", old, "plain"), "new task": ("main", "new", task, "book"),
@@ -97,8 +96,6 @@ def draw_ordinary(plan: Any, side: Any, recordings: Recordings, case: Config, ob
 
 
 def draw_clearance(panel: Any, recording: Recording, case: Config, obstacle: Any) -> None:
-    from dexrepro.report import style
-
     clearance = obstacle.clearance(skills.by_path(recording["between"]), case.scene.tool_radius)
     panel.plot(case.between, clearance, marker=".", color="#888888")
     chosen = obstacle.clearance(recording["chosen"], case.scene.tool_radius)
@@ -111,8 +108,6 @@ def draw_clearance(panel: Any, recording: Recording, case: Config, obstacle: Any
 
 
 def draw_stiffness(panel: Any, recording: Recording) -> None:
-    from dexrepro.report import style
-
     style.band(panel, recording.time, recording["stiffness_low"], recording["stiffness_tall"])
     panel.annotate("2 cm", (4.9, recording["stiffness_low"][-1]), fontsize=6.5, va="top", ha="right")
     panel.annotate("8 cm", (4.9, recording["stiffness_tall"][-1]), fontsize=6.5, va="bottom", ha="right")

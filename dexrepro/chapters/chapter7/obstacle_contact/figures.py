@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "7.D": Figure(
@@ -27,8 +28,6 @@ NAMES = {"muscle": "muscle", "low": "constant, smallest", "mean": "constant, mea
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"muscle", "low", "muscle_plain", "low_plain"} <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     figure, (contact, push, bars) = style.subplots(1, 3, height=2.7)
     lines = {"muscle": (style.BOOK, "-", "muscle"), "low": (style.EXTRA[0], ":", NAMES["low"]),
              "muscle_plain": (style.BOOK, "--", "muscle, no estimation"),
