@@ -12,6 +12,7 @@ shares the results folder: its processes share the samples.
 
 from __future__ import annotations
 
+import fnmatch
 import gzip
 import json
 import re
@@ -39,7 +40,9 @@ from dexrepro.plan import content_of
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.provenance import Provenance, provenance
 from dexrepro.runner import flat, summarise
-from dexrepro.storage import claimed, finite, locked, read_json, write_json, write_text
+from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
+
+Cases = tuple[str, ...]
 
 
 class SamplesFailed(Exception):
@@ -58,6 +61,21 @@ def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list
     if claim not in by_id:
         raise InputError(f"unknown claim '{claim}' in chapter {chapter}: {nearest(claim, by_id)}")
     return [by_id[claim].experiment]
+
+
+def cases_of(chapter: str, experiment: str, wanted: str) -> Cases:
+    """The cases that names and patterns parted by commas mean. Raises InputError where one means none, or no claim is
+    about them alone."""
+    names = list(draw(chapter, experiment, 0)[1]["cases"])
+    for pattern in wanted.split(","):
+        if not fnmatch.filter(names, pattern):
+            raise InputError(f"unknown case '{pattern}' of {experiment}: {nearest(pattern, names)}")
+    chosen = tuple(name for name in names if any(fnmatch.fnmatchcase(name, p) for p in wanted.split(",")))
+    predicates = [claim.predicate for claim in chapters.load(chapter).claims_of(experiment) if claim.predicate]
+    about = [{name.split(".")[1] if name.count(".") > 1 else "" for name in found.metrics} for found in predicates]
+    if not any(cases <= set(chosen) for cases in about):
+        raise InputError(f"case = {wanted} is not allowed: no claim of {experiment} is about these cases alone")
+    return chosen
 
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the margin, in a summary
@@ -127,16 +145,16 @@ def within(share: float, low: float, high: float, whole: bool = False) -> float:
     return round(value) if whole else float(f"{value:.6g}")
 
 
-def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]) -> dict[str, Any]:
+def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any], only: Cases = ()) -> dict[str, Any]:
     """One sample: what was drawn and, of every case that a claim is about, the key of its simulation and its metrics.
 
-    known: cases that were run before, by the key of their simulation; they are taken over.
+    known: cases that were run before, by the key of their simulation; they are taken over. only: some of the cases.
     """
     values, block = draw(chapter, experiment, index)
     seed = int(values["seed"])
     loaded = chapters.load(chapter)
     definition, cases = loaded.experiment(experiment), {}
-    for case in _cases_of(loaded.claims_of(experiment), block["cases"]):
+    for case in _cases_of(loaded.claims_of(experiment), block["cases"], only):
         config = {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case}
         content = content_of(definition, config)
         if content in known:
@@ -151,20 +169,20 @@ def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]
     return {"index": index, "values": values, "cases": cases}
 
 
-def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any]) -> bool:
+def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any], only: Cases = ()) -> bool:
     """Whether a stored sample has every case that the claims are about, under its present simulation."""
-    contents = _contents(chapter, experiment, entry["index"])
+    contents = _contents(chapter, experiment, entry["index"], only)
     return all(entry["cases"].get(case, {}).get("content") == content for case, content in contents.items())
 
 
-def _contents(chapter: str, experiment: str, index: int) -> dict[str, str]:
+def _contents(chapter: str, experiment: str, index: int, only: Cases = ()) -> dict[str, str]:
     """The key of the present simulation of every case that a claim is about, in one sample."""
     values, block = draw(chapter, experiment, index)
     loaded, seed = chapters.load(chapter), int(values["seed"])
     definition = loaded.experiment(experiment)
     return {
         case: content_of(definition, {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case})
-        for case in _cases_of(loaded.claims_of(experiment), block["cases"])
+        for case in _cases_of(loaded.claims_of(experiment), block["cases"], only)
     }
 
 
@@ -232,8 +250,10 @@ def _rounded(numbers: Mapping[str, float | None]) -> dict[str, float | None]:
     return {key: value if value is None else float(f"{value:.6g}") for key, value in numbers.items()}
 
 
-def _cases_of(claims: Sequence[Claim], cases: Mapping[str, Any]) -> list[str]:
-    """The cases that the claims are about: all as soon as a claim needs a number over several cases."""
+def _cases_of(claims: Sequence[Claim], cases: Mapping[str, Any], only: Cases = ()) -> list[str]:
+    """The cases that the claims are about, all as soon as a claim needs a number over several; of them only some."""
+    if only:
+        return [case for case in cases if case in only]
     parts = [name.split(".") for claim in claims for name in claim.metrics]
     if any(len(part) < 3 for part in parts):
         return list(cases)
@@ -249,27 +269,31 @@ def run(
     workers: int | None = None,
     hours: float | None = None,
     update: bool = False,
+    only: Cases = (),
 ) -> Path:
     """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path.
 
-    samples: None takes as many as decide every claim, 100 at most. ``update`` renews the study that is shipped. Raises
-    InputError where a summary of more samples, of another configuration, would be replaced, and SamplesFailed, at the
-    end, where a sample could not be made.
+    samples: None takes as many as decide every claim, 100 at most. ``update`` renews the study that is shipped. only:
+    run these cases alone, for the claims about no other, with a summary of their own. Raises InputError where a summary
+    of more samples, of another configuration, would be replaced, and SamplesFailed, at the end, where a sample could
+    not be made.
     """
     target = summary_file(experiment, results, update)
+    if only:
+        target = _folder(results) / "cases" / f"{experiment}-{digest_of([*only])[:10]}.json"
     for folder in (target.parent, _folder(results)):
         folder.mkdir(parents=True, exist_ok=True)
     if samples is not None:
         _refuse_fewer(chapter, experiment, samples, results, target)
     deadline = time.time() + 3600 * hours if hours else float("inf")
     for look in [samples] if samples is not None else LOOKS:
-        done = _kept(chapter, experiment, results)
+        done = _kept(chapter, experiment, results, only=only)
         with Pool(workers) as pool:
             for index in (index for index in range(look) if index not in done):
-                pool.add(index, contribute, chapter, experiment, index, results, deadline)
+                pool.add(index, contribute, chapter, experiment, index, results, deadline, only)
             failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
         with locked(_folder(results)):  # who ends last sees every sample
-            entries = list(_kept(chapter, experiment, results).values())
+            entries = list(_kept(chapter, experiment, results, only=only).values())
             found = summary(chapter, experiment, entries)
             if len(entries) >= _held(target):  # fewer where the hours are over
                 _write_lines(_lines(target), entries)
@@ -293,10 +317,10 @@ def _refuse_fewer(chapter: str, experiment: str, samples: int, results: Path, ta
         )
 
 
-def contribute(chapter: str, experiment: str, index: int, results: Path, deadline: float) -> None:
+def contribute(chapter: str, experiment: str, index: int, results: Path, deadline: float, only: Cases = ()) -> None:
     """Evaluate one sample and add its line, unless another process does or has done so, or it is too late."""
     with claimed(_folder(results), f"{experiment}.{index}", wait=False) as mine:
-        if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index):
+        if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index, only):
             return
         known = {
             row["content"]: row
@@ -304,19 +328,22 @@ def contribute(chapter: str, experiment: str, index: int, results: Path, deadlin
             if entry["index"] == index
             for row in entry["cases"].values()
         }
-        line = _line(evaluate(chapter, experiment, index, known))
+        line = _line(evaluate(chapter, experiment, index, known, only))
         with locked(_folder(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
             file.seek(max(file.tell() - 1, 0))
             cut_short = file.read(1) not in (b"", b"\n")
             file.write(b"\n" * cut_short + line.encode())
 
 
-def _kept(chapter: str, experiment: str, results: Path, only: int | None = None) -> dict[int, dict[str, Any]]:
+def _kept(
+    chapter: str, experiment: str, results: Path, number: int | None = None, only: Cases = ()
+) -> dict[int, dict[str, Any]]:
     """The samples there are, shipped or made here, of the present simulations, in the order of index."""
     found = {}
     for entry in _all(experiment, results):
-        if only in (None, entry["index"]) and _is_present(chapter, experiment, entry):
-            found[entry["index"]] = {**entry, "values": draw(chapter, experiment, entry["index"])[0]}
+        if number in (None, entry["index"]) and _is_present(chapter, experiment, entry, only):
+            cases = {case: row for case, row in entry["cases"].items() if not only or case in only}
+            found[entry["index"]] = {**entry, "values": draw(chapter, experiment, entry["index"])[0], "cases": cases}
     return dict(sorted(found.items()))
 
 
