@@ -91,7 +91,10 @@ Drawings: TypeAlias = "dict[str, matplotlib.figure.Figure]"  # by the number of 
 
 @dataclass(frozen=True)
 class Figure:
-    """What surrounds a figure: caption (what was simulated, what the book shows) and one-sentence alternative text."""
+    """What surrounds a figure: caption (what was simulated, what the book shows) and one-sentence alternative text.
+
+    ``{experiment.case.metric:.3g}`` in them is filled from the result, ``{experiment.key}`` from its configuration.
+    """
 
     caption: str
     alt: str = ""

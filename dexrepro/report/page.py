@@ -74,7 +74,13 @@ class _Report:
             self._page_of_run(run, common)
         self._page("claims", here="claims", **common)
         self._page("errata", here="errata", **common)
-        self._page("verdicts", here="verdicts", examples=verdicts.examples(claims), **common)
+        self._page(
+            "verdicts",
+            here="verdicts",
+            examples=verdicts.examples(claims),
+            never=verdicts.never_failed(claims),
+            **common,
+        )
         self._page("symbols", here="symbols", **common)
         self._page("equations", here="equations", equations=index, **common)
         self._write_sources(common["provenance"])
