@@ -26,11 +26,11 @@ check: .venv/ready
 bench: .venv/bench
 	$(BIN)/python -m pytest tests/bench -q -s -p no:xdist -o python_files='bench_*.py'
 
-# Wrong laws that the tests have to notice: make mutation PLACES="control/holding networks" SHARE=1
-PLACES ?= control primitives networks physics
-SHARE ?= 0.1
+# Wrong laws that the tests have to notice: make mutation PLACES="control/holding networks" SHARE=1; the score: docs/mutation.md
+PLACES ?= control primitives networks robots physics
+SHARE ?= 0.25
 mutation: .venv/ready
-	$(BIN)/python tests/mutation/mutate.py $(PLACES) --share $(SHARE)
+	$(BIN)/python tests/mutation/mutate.py $(PLACES) --share $(SHARE) --write
 
 # What is uploaded: built, checked, installed into an empty environment and run from an empty folder.
 wheel: .venv/ready

@@ -1,13 +1,18 @@
 """Stored metrics and verdicts: compare results with them (never simulating), and renew them.
 
 A tolerance says how sensitive a number is: ``update`` reruns each case with the initial state moved by each of
-``PERTURBATIONS`` and keeps ``rtol = max(1e-3, 10 x the largest relative change)``, likewise ``atol`` for metrics near
-zero. Counts are exact unless a rerun changes them. A tolerance with a "reason" was set by hand and survives updates.
+``PERTURBATIONS``, and experiments of seconds also with the arithmetic of other machines (``arithmetics``), and keeps
+``rtol = max(1e-3, 10 x the largest relative change)``, likewise ``atol`` for metrics near zero. Counts are exact unless
+a rerun changes them. A "reason" says by what other arithmetic a metric moves farther than by another initial state; one
+in other words was set by hand with its tolerance, and survives updates.
 """
 
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -16,15 +21,18 @@ from typing import Any
 from dexrepro import chapters
 from dexrepro.config import in_quotes
 from dexrepro.errors import InputError
-from dexrepro.plan import outdated, plan_chapter, select
+from dexrepro.plan import Plan, outdated, plan_chapter, select
+from dexrepro.pool import BLAS_THREADS
 from dexrepro.report.damage import check_result, read_table
 from dexrepro.runner import run_plans
 from dexrepro.storage import read_json, write_json
 
 PERTURBATIONS = (1e-9, -1e-9)  # rad, or share of the input data's range; one may take the same branch by luck
+SECONDS = 60.0  # of wall time of all cases, up to which an experiment is run with other arithmetic, too
 RTOL = 1e-3
 ATOL = 1e-9
 NEAR_ZERO = 1e-6
+MEASURED = "the same code gave "  # begins a reason that an update has measured, and may renew
 TABLE = 0.05  # by which a number of a table may change where no metric of its digits is more sensitive
 
 
@@ -293,13 +301,19 @@ def update_chapter(
         outcome = run_plans(which, workers=workers, force=False)
         if outcome.failures:
             raise InputError("; ".join(f"{name}: {text}" for name, text in outcome.failures.items()))
+    elsewhere = _run_elsewhere(chapter, plans, results, workers)
     old = {plan.experiment: Baseline.of(chapter, plan.experiment) for plan in plans}
     new: dict[str, Baseline] = {}
     for plan, *perturbed in zip(plans, *moved, strict=True):
         metrics, *disturbed = (read_json(p.folder / "metrics.json") for p in (plan, *perturbed))
-        stored = old[plan.experiment].metrics
+        stored, other = old[plan.experiment].metrics, elsewhere.get(plan.experiment, {})
         entries = {
-            name: _entry(value, [other.get(name) for other in disturbed], stored.get(name))
+            name: _entry(
+                value,
+                [moved.get(name) for moved in disturbed],
+                {text: found.get(name) for text, found in other.items()},
+                stored.get(name),
+            )
             for name, value in metrics.items()
         }
         verdicts = {claim["id"]: claim["verdict"] for claim in read_json(plan.folder / "claims.json")}
@@ -325,12 +339,54 @@ def update_chapter(
     return [*lines, *(line for baseline in new.values() for line in _sensitive(baseline.metrics)), *written]
 
 
-def _entry(value: float | None, disturbed: Sequence[float | None], stored: Mapping[str, Any] | None) -> dict[str, Any]:
-    if stored and stored.get("reason"):
+def arithmetics() -> tuple[dict[str, str], ...]:
+    """Environments that change the last bits: an old processor's BLAS, numpy and libm; another BLAS and two threads."""
+    import numpy as np
+    from threadpoolctl import threadpool_info
+
+    vectors = np.show_config(mode="dicts")["SIMD Extensions"].get("found", [])
+    old = {"NPY_DISABLE_CPU_FEATURES": " ".join(vectors), "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA"}
+    here = {library.get("architecture") for library in threadpool_info()}
+    wide = "SkylakeX" if here == {"Haswell"} and any("AVX512" in name for name in vectors) else "Haswell"
+    return {"OPENBLAS_CORETYPE": "Prescott", **old}, {"OPENBLAS_CORETYPE": wide, BLAS_THREADS: "2"}
+
+
+def _run_elsewhere(
+    chapter: str, plans: Sequence[Plan], results: Path, workers: int | None
+) -> dict[str, dict[str, dict[str, Any]]]:
+    """Metrics of the experiments that run in seconds, by experiment and by the arithmetic of another machine."""
+    short = [p.experiment for p in plans if read_json(p.folder / "run.json")["wall"] < SECONDS]
+    found: dict[str, dict[str, dict[str, Any]]] = {name: {} for name in short}
+    for number, environment in enumerate(arithmetics() if short else ()):
+        there = results.absolute() / ".cache" / f"arithmetic{number}"
+        line = [sys.executable, "-m", "dexrepro", "run", f"chapter={chapter}", f"only=[{','.join(short)}]"]
+        line += [f"results={there}", *([f"workers={workers}"] if workers else [])]
+        done = subprocess.run(line, env=os.environ | environment, capture_output=True, encoding="utf-8", check=False)
+        text = ", ".join(f"{key}={value}" for key, value in environment.items())
+        if done.returncode:
+            raise InputError(f"with {text}: {' '.join(done.stderr.split())}")
+        for name in short:
+            found[name][text] = read_json(there / f"chapter{chapter}" / name / "metrics.json")
+    return found
+
+
+def _entry(
+    value: float | None,
+    disturbed: Sequence[float | None],
+    elsewhere: Mapping[str, float | None],
+    stored: Mapping[str, Any] | None,
+) -> dict[str, Any]:
+    """disturbed: values with a moved initial state; elsewhere: those with the arithmetic of other machines, by name."""
+    if stored and not stored.get("reason", MEASURED).startswith(MEASURED):
         return {**stored, "value": value}
-    entry = _fresh_entry(value, disturbed)
+    entry = _fresh_entry(value, [*disturbed, *elsewhere.values()])
     if stored and agrees(value, stored):  # a sensitivity once seen remains
         entry |= {kind: max(entry[kind], stored[kind]) for kind in ("rtol", "atol")}
+    moved = {text: other for text, other in elsewhere.items() if not agrees(other, _fresh_entry(value, disturbed))}
+    if moved:
+        entry["reason"] = MEASURED + "; ".join(f"{other:.6g} with {text}" for text, other in moved.items())
+    elif stored and "reason" in stored and agrees(value, stored):
+        entry["reason"] = stored["reason"]
     return entry
 
 

@@ -105,6 +105,24 @@ def leaves(node: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
         yield from leaves(value, f"{prefix}.{key}" if prefix else str(key))
 
 
+def value_at(node: Any, dotted: str) -> Any:
+    """The value of a dotted key in nested dictionaries and lists, None where there is none."""
+    for part in dotted.split("."):
+        if isinstance(node, list) and part.isdigit():
+            node = node[int(part)]
+        else:
+            node = node.get(part) if isinstance(node, Mapping) else None
+    return node
+
+
+def set_value(node: Any, dotted: str, value: Any) -> None:
+    """Set the value of a dotted key that is there."""
+    *parents, last = (int(part) if part.isdigit() else part for part in dotted.split("."))
+    for part in parents:
+        node = node[part]
+    node[last] = value
+
+
 def differences(config: Mapping[str, Any], shipped: Mapping[str, Any], prefix: str = "") -> list[str]:
     """Keys in which two configurations differ, as ``key=value (book: value)``."""
     found: list[str] = []

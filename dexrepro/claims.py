@@ -164,6 +164,7 @@ class Claim:
         was searched before it stands.
     by_construction: the generator that has the effect built in. not_testable: why nothing can be measured.
     note: what a reader must know beside the verdict; ``{experiment.case.metric:.3g}`` in it is filled from the run.
+    beside: what another experiment of the chapter shows of it, filled likewise where that was run, else left out.
     """
 
     id: str
@@ -181,6 +182,7 @@ class Claim:
     not_testable: str = ""
     note: str = ""
     where: str = ""
+    beside: str = ""
 
     def __post_init__(self) -> None:
         if (self.predicate is None) != bool(self.not_testable):
@@ -309,6 +311,7 @@ class Erratum:
 
     kind: "error" (inconsistent with the book's own equations), "gap" (something needed is not printed), "reading"
         (defensible as printed under the reading named) or "slip" (typesetting, possibly text extraction).
+    summary, correction: may hold numbers of a run, as a claim's note does.
     switch: the exact override that selects the printed form ("" where it does not run).
     evidence: names of the metrics that show the effect.
     """

@@ -1,4 +1,4 @@
-"""The command line: dexrepro run, list, check, draw, report, render, study, new, diff, completion; each is thin."""
+"""The command line; each command is thin (``dexrepro --help`` names them)."""
 
 from __future__ import annotations
 
@@ -27,6 +27,10 @@ if TYPE_CHECKING:
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--help", "-h", "--info", "-i", "--hydra-help", "--resolve")
 SHOWN = 6  # names in one line of the check
 CASES = ("case", "cases")
+TUNE = {
+    "tune_command": "case=EXPERIMENT.CASE minimise=METRIC (or maximise=) budget=N, and parameters: law.gain=0.01..0.1",
+    "compare_command": "laws=FOLDER case=EXPERIMENT.CASE,... minimise=METRIC (or maximise=) budget=N",
+}
 STUDY = ("claim", "samples", "hours")  # what only a study knows
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
 
@@ -119,6 +123,10 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument("--accept", nargs="+", default=[], metavar="ID", help="claims whose verdict may change")
     check.set_defaults(function=check_command)
 
+    cross = commands.add_parser("crosscheck", parents=[selection], help="run the book under MuJoCo, too, and compare")
+    cross.add_argument("--update", action="store_true", help="renew the table that is shipped")
+    cross.set_defaults(function=crosscheck_command)
+
     draw = commands.add_parser("draw", parents=[selection], help="draw again from files, nothing simulated")
     draw.set_defaults(function=draw_command)
 
@@ -127,7 +135,14 @@ def _parser() -> argparse.ArgumentParser:
 
     study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
     study.add_argument("--update", action="store_true", help="renew the study that is shipped")
+    study.add_argument("--confirm", action="store_true", help="carry samples over a change of code: two run again")
     study.set_defaults(function=study_command)
+
+    tune = commands.add_parser("tune", help="search a case's parameters for the best value of a metric")
+    compare = commands.add_parser("compare", help="the laws of a folder beside the book's, tuned alike")
+    for command, function in ((tune, tune_command), (compare, compare_command)):
+        command.add_argument("selection", nargs="*", metavar="key=value", help=TUNE[function.__name__])
+        command.set_defaults(function=function)
 
     render = commands.add_parser("render", parents=[selection], help="animate recorded runs (case=NAME format=gif|mp4)")
     render.set_defaults(function=render_command)
@@ -387,6 +402,28 @@ def _print_check(report: ChapterReport) -> None:
         out.print(f"  {line}", markup=False)
 
 
+def crosscheck_command(options: argparse.Namespace) -> int:
+    """Run what simulates arms under the other engine; say which numbers and verdicts differ."""
+    from dexrepro import crosscheck
+    from dexrepro.selection import selected
+
+    numbers, only, results, workers, _ = selected(options.selection)
+    target = crosscheck.table(results, options.update)
+    for number in numbers:
+        for item in crosscheck.run(number, only, results, workers):
+            crosscheck.keep([item], target)
+            matter = [entry for entry in item.metrics if entry.matters]
+            turned = [f"{key} {' under PyBullet, '.join(item.claims[key])} under MuJoCo" for key in item.turned]
+            out.print(
+                f"{item.experiment}: {item.compared} numbers, {len(item.metrics)} outside their tolerance, "
+                f"{len(matter)} also outside a study's range; {len(item.claims)} claims, {len(turned)} turn"
+                + "".join(f"\n  {text}" for text in turned),
+                markup=False,
+            )
+    out.print(str(target), markup=False)
+    return OK
+
+
 def draw_command(options: argparse.Namespace) -> int:
     """Draw figures and tables again from what is on disk."""
     from dexrepro.plan import plan_chapter, select
@@ -486,6 +523,11 @@ def study_command(options: argparse.Namespace) -> int:
     samples, hours = _samples(values.get("samples")), _hours(values.get("hours"))
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
+            if options.confirm:
+                carried, other = study.confirm(number, name, results, options.update)
+                differ = f"; other numbers than before: {', '.join(other)}" if other else ""
+                out.print(f"{name}: {carried} cases of samples carried over{differ}", markup=False)
+                continue
             try:
                 path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update)
             except study.SamplesFailed as error:
@@ -527,7 +569,7 @@ def _study_jobs(options: argparse.Namespace) -> int:
     results = [text for text in words if text.startswith("results=")]
     status = _launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
     if options.update and status == OK:
-        return study_command(argparse.Namespace(selection=words, update=True))
+        return study_command(argparse.Namespace(selection=words, update=True, confirm=False))
     for name in names:
         if (path := study.summary_file(name, folder)).exists():
             _print_study(name, path, folder)
@@ -538,7 +580,7 @@ def _study_job(config: Any) -> None:
     from dexrepro.sweep import JobFailed, enter_launch_folder
 
     enter_launch_folder()
-    if study_command(argparse.Namespace(selection=["workers=1", *config.selection], update=False)) != OK:
+    if study_command(argparse.Namespace(selection=["workers=1", *config.selection], update=False, confirm=False)) != OK:
         raise JobFailed("a process was killed; the same command completes what is missing")
 
 
@@ -555,6 +597,87 @@ def _print_study(name: str, path: Path, results: Path) -> None:
         out.print(
             f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}), {row['word']}{most}", markup=False
         )
+
+
+def tune_command(options: argparse.Namespace) -> int:
+    """``dexrepro tune case=EXPERIMENT.CASE minimise=METRIC budget=N [law.gain=0.01..0.1 …]``."""
+    from dexrepro import tune
+    from dexrepro.selection import quoted
+
+    known, rest = _search_words(options.selection)
+    experiment = known["case"].partition(".")[0]
+    overrides = [quoted(word) for word in rest if re.match(rf"[+~]|seed=|shared\.|{re.escape(experiment)}\.", word)]
+    parameters = [word for word in rest if quoted(word) not in overrides]
+    search = tune.search_of(known["case"], known["metric"], known["sign"], parameters, overrides)
+    if not search.ranges:
+        raise InputError(f"{search.name}: no parameter of its law declares a range; name some: law.gain=0.01..0.1")
+    found, path = tune.run(search, known["budget"], known["results"], known["workers"], _say)
+    if found.best is None:
+        raise InputError(f"{search.name}: {found.edges[0]}")
+    values = ", ".join(f"{key} = {value:g}" for key, value in found.chosen.items()) or "as it stands"
+    was = "undefined" if found.start is None else f"{found.start:.4g}"
+    failed = f" ({found.failed} of them without a usable value)" if found.failed else ""
+    _say(f"{search.name}: {search.metric} {found.best:.4g} instead of {was} after {found.runs} runs{failed}: {values}")
+    for edge in found.edges:
+        _say(edge)
+    _say(f"stored in {path}")
+    if found.chosen:
+        given = [f"'{word}'" for word in rest if word not in parameters]
+        _say(" ".join(["dexrepro run", f"only={experiment} case={search.case}", *given, search.override(found.chosen)]))
+    return OK
+
+
+def compare_command(options: argparse.Namespace) -> int:
+    """``dexrepro compare laws=FOLDER case=EXPERIMENT.CASE,… minimise=METRIC budget=N``."""
+    import pandas as pd
+
+    from dexrepro import tune
+
+    known, rest = _search_words(options.selection, "laws")
+    if rest:
+        raise InputError(f"'{rest[0]}' has no meaning here; there are: {TUNE['compare_command']}")
+    laws = tune.laws_in(Path(known["laws"]).expanduser())
+    results, names = known["results"], known["case"].split(",")
+    rows = tune.leaderboard(
+        names, laws, known["metric"].split(","), known["sign"],
+        lambda search: tune.run(search, known["budget"], results, known["workers"], _say)[0],
+    )  # fmt: skip
+    shown = Table(*rows[0], title=f"{known['budget']} runs each", box=None, pad_edge=False)
+    for row in rows:
+        shown.add_row(*(f"{value:.4g}" if isinstance(value, float) else str(value or "") for value in row.values()))
+    out.print(shown)
+    path = results / "tuning" / f"leaderboard-{'-'.join(dict.fromkeys(name.partition('.')[0] for name in names))}.csv"
+    pd.DataFrame(rows).to_csv(path, index=False)
+    _say(f"stored in {path}")
+    return OK
+
+
+def _say(text: str) -> None:
+    out.print(text, markup=False)
+
+
+def _search_words(words: Sequence[str], *needed: str) -> tuple[dict[str, Any], list[str]]:
+    """What the words of ``tune`` and ``compare`` ask for, and the other words."""
+    from dexrepro.selection import positive_workers
+
+    own = ("case", "budget", "minimise", "maximise", "results", "workers", *needed)
+    known: dict[str, Any] = dict(text.partition("=")[::2] for text in words if text.partition("=")[0] in own)
+    for key in ("case", *needed):
+        if not known.get(key):
+            raise InputError(f"{key}= is missing; there are: {', '.join(f'{name}=' for name in own)}")
+    goals = [key for key in ("minimise", "maximise") if known.get(key)]
+    if len(goals) != 1:
+        raise InputError("give minimise=METRIC or maximise=METRIC: the metric of the case that is to be best")
+    budget = str(known.get("budget", "32"))
+    if not (budget.isdecimal() and 2 <= int(budget) <= 4096):
+        raise InputError(f"budget = {budget} is not allowed: it must be a whole number of 2 or greater, 4096 at most")
+    workers = known.get("workers")
+    known |= {
+        "metric": known[goals[0]], "sign": 1 if goals[0] == "minimise" else -1, "budget": int(budget),
+        "results": Path(known.get("results", "results")).expanduser(),
+        "workers": positive_workers(int(workers) if workers and workers.isdigit() else workers),
+    }  # fmt: skip
+    return known, [word for word in words if word.partition("=")[0] not in own]
 
 
 def completion_command(options: argparse.Namespace) -> int:

@@ -17,10 +17,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-
 if TYPE_CHECKING:
     import matplotlib.figure
+    import numpy as np
     import pandas as pd
     from numpy.typing import NDArray
 
@@ -46,6 +45,18 @@ class Config(dict[str, Any]):
         if isinstance(value, list):
             return [cls.of(item) for item in value]
         return value
+
+
+def changed(case: Mapping[str, Any], shared: Mapping[str, Any], prefix: str = "") -> set[str]:
+    """Dotted keys in which a case differs from its experiment's own block: what the case is."""
+    found: set[str] = set()
+    for key, value in case.items():
+        other = shared.get(key)
+        if isinstance(value, Mapping) and isinstance(other, Mapping):
+            found |= changed(value, other, f"{prefix}{key}.")
+        elif value != other:
+            found.add(f"{prefix}{key}")
+    return found
 
 
 @dataclass

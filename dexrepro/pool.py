@@ -28,6 +28,7 @@ from typing import Any
 from dexrepro.errors import InputError
 
 TICK = 0.2  # s between looks at workers whose end nobody announces
+BLAS_THREADS = "DEXREPRO_BLAS_THREADS"  # variable of the environment: another count than one, to see what rounding does
 COMPLETES = "the same command completes what is missing"
 
 
@@ -222,7 +223,7 @@ def serve_tasks(connection: Connection) -> None:
 
 
 def begin_worker(connection: Connection) -> None:
-    """Leave Ctrl-C to the parent, die with it, use one BLAS thread, report simulated time."""
+    """Leave Ctrl-C to the parent, die with it, use one BLAS thread (or so many), report simulated time."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     with contextlib.suppress(OSError, AttributeError):
@@ -236,7 +237,7 @@ def begin_worker(connection: Connection) -> None:
 
     from dexrepro.physics.loop import Progress as Simulation
 
-    threadpool_limits(1)
+    threadpool_limits(int(os.environ.get(BLAS_THREADS, 1)))
     gc.freeze()  # what is imported stays; without this the collector walks all of it again and again
     gc.set_threshold(20_000)
     Simulation.report = staticmethod(

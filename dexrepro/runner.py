@@ -22,10 +22,9 @@ from dexrepro.case import live
 from dexrepro.case import run as run_case
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics
-from dexrepro.plan import NUMERICAL, PARTIAL, Job, Plan, import_anew, own_digest, presentation
+from dexrepro.plan import PARTIAL, Job, Plan, import_anew, own_digest, presentation
 from dexrepro.pool import COMPLETES, Failure, Pool, start_method
 from dexrepro.progress import Progress, Silent
-from dexrepro.recordings import load_recording, save_recording
 from dexrepro.storage import (
     claimed,
     copy,
@@ -41,7 +40,7 @@ from dexrepro.storage import (
     write_yaml,
 )
 
-PACKAGES = ("numpy", "scipy", "pybullet", "pandas", "matplotlib", "hydra-core")
+PACKAGES = ("pandas", "matplotlib", "hydra-core")  # beside those that can change a number
 SUMMARY = "summary"  # stands for the numbers over several cases in nested metrics
 KEPT, RECENT = 6, 7 * 24 * 3600  # cached results a case: so many, and all of the last seconds (a sweep may need them)
 
@@ -109,9 +108,12 @@ class RunEntry:
 
 def execute(job: Job) -> CaseEntry:
     """Simulate, measure and store one case."""
+    from dexrepro.physics import engine
     from dexrepro.physics.world import World
+    from dexrepro.recordings import save_recording
 
     World.live = job.gui
+    engine.use(job.config.get("engine", engine.REFERENCE))
     experiment = chapters.load(job.chapter).experiment(job.experiment)
     import_anew(job.config)
     with warnings.catch_warnings(record=True) as caught:
@@ -224,6 +226,7 @@ def _of_some_cases(differs: Sequence[str]) -> bool:
 
 def present(chapter: str, experiment: Experiment, folder: Path) -> None:
     """Numbers over several cases, claims, tables and figures of a result folder, from its files alone."""
+    from dexrepro.recordings import load_recording
     from dexrepro.report import style
 
     run = read_json(folder / "run.json")
@@ -286,7 +289,7 @@ def _run_entry(plan: Plan, entries: dict[str, CaseEntry], series: list[str]) -> 
         presentation=plan.presentation,
         differs=plan.differs,
         series=series,
-        packages={name: version(name) for name in PACKAGES},
+        packages={**plan.versions, **{name: version(name) for name in PACKAGES}},
         machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
         python=platform.python_version(),
         wall=wall,
@@ -350,7 +353,11 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     # An experiment of few cases has long ones: they begin, and the short ones of the others fill the gaps at the end.
     todo.sort(key=lambda job: len(by_name[job.experiment].jobs))
     import dexrepro.physics.world  # noqa: F401  imported once, before the processes fork
+    from dexrepro.physics import engine
 
+    for word in filter(engine.is_installed, {job.config.get("engine", engine.REFERENCE) for job in todo}):
+        engine.use(word)
+        engine.engine()
     here = any(job.gui or (start_method() != "fork" and "__main__." in str(job.config)) for job in todo)
     try:
         with Pool(workers, progress.report, here) as pool:
@@ -400,7 +407,7 @@ def up_to_date(plan: Plan, presented: bool = True) -> bool:
         run = read_json(plan.folder / "run.json")
         same = run["contents"] == plan.contents and not (presented and run["presentation"] != plan.presentation)
         same = same and run["version"] == __version__ and run["differs"] == plan.differs
-        same = same and all(run["packages"][name] == version(name) for name in NUMERICAL)
+        same = same and all(run["packages"][name] == number for name, number in plan.versions.items())
         files = ("metrics.json", "claims.json", "config.yaml")
         whole = all((plan.folder / name).stat().st_size for name in files)
         return same and whole and all((plan.folder / "series" / name).exists() for name in run["series"])

@@ -9,6 +9,7 @@ from typing import Any
 
 from dexrepro import baselines, chapters, study
 from dexrepro.claims import AFTER_CORRECTION, REPRODUCED, ROBUST, VERDICTS
+from dexrepro.report.listing import chapter_listing
 
 
 def rows() -> list[dict[str, Any]]:
@@ -17,7 +18,7 @@ def rows() -> list[dict[str, Any]]:
 
 
 def _row(number: str) -> dict[str, Any]:
-    chapter = chapters.load(number)
+    chapter, listed = chapters.load(number), chapter_listing(number)["experiments"]
     stored = baselines.stored(number).values()
     metrics = {name: entry["value"] for baseline in stored for name, entry in baseline.metrics.items()}
     evaluated = [claim.evaluate(metrics) for claim in chapter.claims if claim.source == "book"]
@@ -26,8 +27,8 @@ def _row(number: str) -> dict[str, Any]:
     return {
         "chapter": number,
         "title": chapter.title,
-        "figures": sum(len(experiment.figures) for experiment in chapter.experiments),
-        "tables": sum(len(experiment.tables) for experiment in chapter.experiments),
+        "figures": sum(len(experiment["figures"]) for experiment in listed),
+        "tables": sum(len(experiment["tables"]) for experiment in listed),
         "claims": len(evaluated),
         **{verdict: sum(item.verdict == verdict for item in evaluated) for verdict in VERDICTS},
         "severe": len(severe),

@@ -12,15 +12,16 @@ import shutil
 import uuid
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 import yaml
 from filelock import FileLock, Timeout
 
-from dexrepro.experiment import Recording
-from dexrepro.recordings import load_recording, read_frame
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from dexrepro.experiment import Recording
 
 _PART = re.compile(r"\.(?P<target>.+)-[0-9a-f]{12}\.part")
 
@@ -216,10 +217,14 @@ class Result:
 
     def recording(self, case: str) -> Recording:
         """Series, frames and images of one case, at the rate kept on disk."""
+        from dexrepro.recordings import load_recording
+
         return load_recording(self.folder / "series", case, self.run["cases"][case]["status"])
 
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
+        from dexrepro.recordings import read_frame
+
         return {path.stem: read_frame(path) for path in sorted((self.folder / "tables").glob("*.csv"))}
 
     @property

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
+import os
+import platform
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from dexrepro import baselines, cli
+from dexrepro import baselines, chapters, cli
 from dexrepro.errors import InputError
+from dexrepro.pool import BLAS_THREADS
 from dexrepro.storage import read_json, write_json
 
 RESULTS = Path("results")
+ARITHMETICS = baselines.arithmetics
+
+
+@pytest.fixture(autouse=True)
+def here_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Other arithmetic takes processes that most tests need not wait for."""
+    monkeypatch.setattr(baselines, "arithmetics", tuple)
 
 
 @pytest.fixture
@@ -37,6 +50,46 @@ def test_counts_are_exact_and_numbers_have_a_tolerance_that_follows_their_sensit
     entries = read_json(stored)["metrics"]
     assert entries["decay.plain.samples"] == {"value": 200, "rtol": 0.0, "atol": 0.0}
     assert entries["decay.plain.final"]["rtol"] == 1e-3
+
+
+def test_a_tolerance_covers_what_the_arithmetic_of_another_machine_changes(
+    toy: Path, toy_book: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    code = toy_book / "chapter90/decay/experiment.py"
+    code.write_text(code.read_text().replace('"none": np.nan', '"none": 1.0 + 0.02 * ("BITS" in os.environ)'))
+    chapters.forget()
+    monkeypatch.setattr(baselines, "arithmetics", lambda: ({"BITS": "1"},))
+    baselines.update_chapter("90", RESULTS, accept=[], workers=1)
+    entries = read_json(baselines.baseline_file("90", "decay"))["metrics"]
+    expected = {"value": 1.0, "rtol": 0.2, "atol": 1e-9, "reason": "the same code gave 1.02 with BITS=1"}
+    assert entries["decay.plain.none"] == expected
+    assert entries["decay.plain.final"].keys() == {"value", "rtol", "atol"}
+    assert entries["decay.plain.final"]["rtol"] == 1e-3
+    assert cli.main(["check"]) == 0
+
+
+def test_a_measured_reason_is_renewed_and_one_set_by_hand_stays() -> None:
+    measured = baselines._entry(2.0, [2.0], {"A=1": 2.2, "B=1": 2.0}, None)
+    assert measured == {"value": 2.0, "rtol": 1.0, "atol": 1e-9, "reason": "the same code gave 2.2 with A=1"}
+    again = baselines._entry(2.0, [2.0], {}, measured)
+    assert again == measured, "a sensitivity once seen remains"
+    assert "reason" not in baselines._entry(5.0, [5.0], {}, measured)
+    by_hand = {**measured, "rtol": 0.1, "reason": "a count of draws"}
+    assert baselines._entry(3.0, [3.0], {"A=1": 9.0}, by_hand) == {**by_hand, "value": 3.0}
+
+
+def test_the_arithmetic_of_another_machine_can_be_had_here() -> None:
+    """Otherwise a tolerance would cover nothing but what stands beside it."""
+    old, threads = ARITHMETICS()
+    line = [sys.executable, "-c", "import numpy, threadpoolctl as t; print(t.threadpool_info()[0]['architecture'])"]
+    here, there = (
+        subprocess.run(line, env=os.environ | environment, capture_output=True, text=True, check=True)
+        for environment in ({"OPENBLAS_CORETYPE": "Haswell"}, old)
+    )
+    assert not there.stderr
+    if platform.machine() == "x86_64" and "openblas" in str(np.show_config(mode="dicts")):
+        assert here.stdout != there.stdout
+    assert threads[BLAS_THREADS] == "2"
 
 
 def test_drift_missing_new_and_changed_verdicts_are_told_apart(stored: Path) -> None:

@@ -21,6 +21,8 @@ def test_the_provenance_grammar() -> None:
     assert parse_provenance("m | chosen: fits | 0.5..6e-1") == Provenance("m", "chosen", "fits", 0.5, 0.6)
     assert parse_provenance("- | derived: a/b | -1..+2").low == -1
     assert parse_provenance("khat_o(0) [N/m] | printed 2.4") == Provenance("N/m", "printed", "2.4", symbol="khat_o(0)")
+    assert parse_provenance("- | chosen: open | one of a, b").words == ("a", "b")
+    assert parse_provenance("- | chosen: open | drawn from a, b").drawn
     assert parse_provenance("- | printed Table 6.1 [16]").symbol is None
     assert parse_provenance("just a remark") is None
     assert parse_provenance("m | guessed") is None
@@ -148,6 +150,17 @@ def test_a_block_inherits_what_it_does_not_say_itself() -> None:
     }
     with pytest.raises(InputError, match=r"shared\.nothing"):
         inherited({"e": {"inherits": "shared.nothing"}})
+
+
+def test_a_block_inherits_named_keys_of_another() -> None:
+    shared = {"inherits": "base", "gain": 1.0, "bound": {"low": 0}}
+    blocks = {"base": {"rate": 3.0, "lag": 0.1}, "shared": shared}
+    found = inherited({**blocks, "e": {"inherits": ["base", {"shared": ["gain", "rate"]}], "gain": 2.0}})["e"]
+    assert found == {"rate": "${shared.rate}", "lag": "${base.lag}", "gain": 2.0}
+    with pytest.raises(InputError, match="shared has no 'gian': did you mean 'gain'"):
+        inherited({**blocks, "e": {"inherits": {"shared": ["gian"]}}})
+    with pytest.raises(InputError, match="does not inherit from this one"):
+        inherited({"a": {"inherits": {"b": ["x"]}}, "b": {"inherits": {"a": ["x"]}}})
 
 
 def test_an_inherited_key_can_be_overridden_there_and_where_it_comes_from() -> None:

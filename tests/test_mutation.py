@@ -46,3 +46,33 @@ def test_a_mutant_runs_in_the_place_of_its_module(tmp_path: Path) -> None:
         assert not any(mutate.passes("law", path, code, tests, 60.0) for _, _, code in mutate.mutants(path))
     finally:
         sys.path.remove(str(tmp_path))
+
+
+SCALED = """
+unit = 2.0
+
+def scaled(x):
+    return [unit * item for item in x]
+"""
+
+
+def test_a_function_changes_where_it_is_and_the_rest_only_by_an_import(tmp_path: Path) -> None:
+    path = tmp_path / "scaled.py"
+    path.write_text(SCALED)
+    old = compile(SCALED, str(path), "exec")
+    names = {}
+    exec(old, names)
+    found = [(text, mutate.changed(old, code)) for _, text, code in mutate.mutants(path)]
+    assert [text for text, function in found if function is None] == ["unit = 2.0  [2.0 -> 3.0]"]
+    assert [function.co_name for _, function in found if function] == ["scaled"]
+    names["scaled"].__code__ = found[1][1]
+    assert names["scaled"]([4.0]) == [0.5]
+
+
+def test_what_takes_too_long_counts_as_noticed() -> None:
+    def forever() -> None:
+        while True:
+            pass
+
+    assert mutate.in_a_process(lambda: 5, 10.0) == 5
+    assert mutate.in_a_process(forever, 0.2) is None

@@ -22,7 +22,7 @@ def tool(*command: str) -> subprocess.CompletedProcess[str]:
 
 
 def requirements(lines: list[str]) -> dict[str, str]:
-    found = (re.fullmatch(r"([\w.-]+?)(-base)? ?(>=.*)?", line) for line in lines)
+    found = (re.fullmatch(r"([\w.-]+?)(-base|-python)? ?(>=[^;]*)?(;.*)?", line) for line in lines)
     return {match[1].lower(): match[3] or "" for match in found if match}
 
 

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from dexrepro import baselines, chapters, study
-from dexrepro.claims import BY_CONSTRUCTION, NOT_EVALUATED, Claim, less, robustness
+from dexrepro.checks import leaves
+from dexrepro.claims import BY_CONSTRUCTION, NOT_EVALUATED, Claim, filled, less, robustness
+from dexrepro.config import compose_chapter, resolved_block
 from dexrepro.report import verdicts
 
 
@@ -64,6 +68,21 @@ def test_verdicts_of_every_kind() -> None:
 def test_the_numbers_of_a_note_come_from_the_run() -> None:
     claim = Claim("C", "1", "a falls", less("e.a.x", 1.0), note="It is {e.a.x:.1f} mm, not {e.a.gone}.")
     assert claim.evaluate({"e.a.x": 0.52}).note == "It is 0.5 mm, not ?."
+
+
+@pytest.mark.parametrize("number", chapters.numbers())
+def test_every_number_that_a_text_takes_from_a_run_is_stored(number: str) -> None:
+    """In notes of claims, errata, captions and alternative texts; the last two take those of the configuration too."""
+    chapter, metrics = chapters.load(number), stored_metrics(number)
+    composed = compose_chapter(number)
+    for experiment in chapter.experiments:
+        metrics |= dict(leaves({experiment.name: resolved_block(composed, experiment.name)}))
+    texts = [text for item in chapter.errata for text in (item.summary, item.correction)]
+    texts += [text for item in chapter.experiments for f in item.figures.values() for text in (f.caption, f.alt)]
+    texts += [claim.note for claim in chapter.claims]
+    named = {name for text in texts for name in re.findall(r"\{(\w+(?:\.\w+)+)(?::[^{}]*)?\}", text)}
+    assert not {name for name in named if metrics.get(name) is None}
+    assert not [text for text in texts if re.search(r"\{\w+\.", filled(text, metrics))]
 
 
 def test_what_a_study_shows() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import gzip
 import os
 import shutil
@@ -9,13 +10,15 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from conftest import ROOT
+from scipy import stats
 
 from dexrepro import study
-from dexrepro.claims import Claim, less
+from dexrepro.claims import LOOKS, Claim, less, robustness
 from dexrepro.errors import InputError
 from dexrepro.pool import Pool
 from dexrepro.storage import read_json
@@ -54,7 +57,7 @@ def test_a_case_that_fails_leaves_the_claims_of_the_others(folder: Path, monkeyp
     values, block = study.draw("90", "decay", 0)
     block["cases"]["gain2"]["fail"] = True
     monkeypatch.setattr(study, "draw", lambda *_: (values, block))
-    sample = study.evaluate("90", "decay", 0)
+    sample = study.evaluate("90", "decay", 0, {})
     assert sample["cases"]["gain2"]["error"] == "ValueError: told to fail"
     found = study.summary("90", "decay", [sample])
     assert found["failed"] == 1
@@ -74,6 +77,22 @@ def test_points_cover_the_ranges_evenly_and_lists_are_drawn_element_by_element(
     assert set(study.parameters("90", "decay")) == {"decay.start", "decay.gains.0", "decay.gains.1"}
     values, block = study.draw("90", "decay", 5)
     assert block["gains"] == [values["decay.gains.0"], values["decay.gains.1"]]
+    study.parameters.cache_clear()
+
+
+def test_words_are_drawn_evenly_and_leave_the_numbers_alone(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    start = study.parameters("90", "decay")["decay.start"]
+    before = [study.draw("90", "decay", index)[0] for index in range(16)]
+    words = study.Provenance("-", "chosen", "either", words=("exact", "euler"), drawn=True)
+    composed = study.compose_chapter("90")
+    composed["decay"]["integrator"] = "exact"
+    monkeypatch.setattr(study, "compose_chapter", lambda chapter: copy.deepcopy(composed))
+    monkeypatch.setattr(study, "provenance", lambda chapter: {"decay.start": start, "decay.integrator": words})
+    study.parameters.cache_clear()
+    drawn = [study.draw("90", "decay", index) for index in range(16)]
+    assert [block["integrator"] for _, block in drawn] == [values["decay.integrator"] for values, _ in drawn]
+    assert sorted(values.pop("decay.integrator") for values, _ in drawn) == ["euler"] * 8 + ["exact"] * 8
+    assert [values for values, _ in drawn] == before
     study.parameters.cache_clear()
 
 
@@ -171,6 +190,40 @@ def test_shipped_samples_count_and_those_of_another_configuration_do_not(
     assert evaluated[2:] == [0, 1]
 
 
+def test_only_the_cases_that_changed_run_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    study.run("90", "decay", 2, RESULTS, workers=1)
+    keys = study.content_of
+    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
+    monkeypatch.setattr(study, "content_of", lambda who, values: keys(who, values) + "new" * (values["case"] == "fast"))
+    ran: list[str] = []
+    run_case = study.run_case
+    monkeypatch.setattr(
+        study, "run_case", lambda who, values, seed: ran.append(values.case) or run_case(who, values, seed)
+    )
+    assert read_json(study.run("90", "decay", 2, RESULTS))["samples"] == 2
+    assert ran == ["fast", "fast"]
+
+
+def test_samples_are_carried_over_a_change_of_code_that_changes_no_number(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = study.run("90", "decay", 4, RESULTS, workers=1)
+    keys, run_case = study.content_of, study.run_case
+    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
+    monkeypatch.setattr(study, "content_of", lambda who, values: keys(who, values) + "of other code")
+
+    def other(who: Any, values: Any, seed: int) -> Any:
+        recording, metrics, *rest = run_case(who, values, seed)
+        return recording, {**metrics, "final": metrics["final"] * (1.01 if values.case == "fast" else 1)}, *rest
+
+    monkeypatch.setattr(study, "run_case", other)
+    assert study.confirm("90", "decay", RESULTS) == (3 * 4, ["fast"])
+    monkeypatch.setattr(study, "run_case", run_case)
+    assert study.confirm("90", "decay", RESULTS) == (4, [])
+    monkeypatch.setattr(study, "run_case", lambda *_: pytest.fail("it was simulated again"))
+    assert read_json(study.run("90", "decay", 4, RESULTS)) == read_json(path)
+
+
 def test_a_study_never_becomes_smaller(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = study.run("90", "decay", 3, RESULTS, workers=1)
     lines, narrower = (RESULTS / "studies/decay.jsonl").read_text(), study.parameters("90", "decay")
@@ -231,3 +284,19 @@ def test_a_study_in_a_checkout_changes_no_tracked_file(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert list(tmp_path.glob("results/studies/*.json"))
     assert subprocess.run([*git, "status", "--porcelain"], capture_output=True, text=True, check=True).stdout == ""
+
+
+@pytest.mark.parametrize(("share", "wrong"), [(0.85, ("robust", "fragile")), (0.80, ("robust",)), (0.90, ("fragile",))])
+def test_a_word_of_a_study_is_wrong_in_at_most_one_of_twenty(share: float, wrong: tuple[str, ...]) -> None:
+    """Exact: the chance of every count of draws that held, from look to look, where a claim holds in ``share``."""
+    alive, words, before = np.ones(1), dict.fromkeys(("robust", "fragile", "open"), 0.0), 0
+    for look in LOOKS:
+        alive = np.convolve(alive, stats.binom.pmf(np.arange(look - before + 1), look - before, share))
+        before = look
+        for holds, chance in enumerate(alive):
+            word = robustness(holds, look)
+            if word != "open" or look == LOOKS[-1]:
+                words[word] += chance
+                alive[holds] = 0.0
+    assert sum(words.values()) == pytest.approx(1)
+    assert sum(words[word] for word in wrong) < 0.05, words

@@ -157,12 +157,14 @@ class Contents:
         text = " ".join([entry["statement"], entry["note"], entry["where"], *(item.equation for item in touching)])
         names = [name.split(".") for name in entry["values"]]
         shown = {**entry, "study": row, "robustness": verdicts.robustness(row), "chapter": self.number}
+        beside = filled(claim.beside, self.metrics) if claim else ""
         return {
             **shown,
             "strength": verdicts.strength(shown),
             "severe": verdicts.is_severe(shown),
             "noticed": verdicts.noticed(shown),
             "often": verdicts.often(shown),
+            "beside": "" if "?" in beside else beside,  # its numbers are not there
             "where": re.sub(r"^(?=\d)", "Sect. ", entry["where"]),
             "errata": touching,
             "equations": equations.numbers(text),
@@ -174,9 +176,10 @@ class Contents:
 
     def _erratum(self, item: Erratum) -> dict[str, Any]:
         evidence = [(name, self.metrics.get(name)) for name in item.evidence]
-        texts = {key: filled(getattr(item, key), self.metrics) for key in ("summary", "correction")}
         return {
-            **vars(item), **texts, "evidence": evidence, "equations": equations.numbers(item.equation),
+            **vars(item), "evidence": evidence,
+            "summary": filled(item.summary, self.metrics), "correction": filled(item.correction, self.metrics),
+            "equations": equations.numbers(item.equation),
             "line": self._line(item.id), "chapter": self.number,
         }  # fmt: skip
 

@@ -8,16 +8,17 @@ import re
 import zlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pandas as pd
 import yaml
 
 from dexrepro import chapters
 from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment
-from dexrepro.recordings import read_frame
 from dexrepro.storage import read_json, read_text, read_yaml
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LARGEST = 1 << 28  # bytes of a series when it is unpacked
 ENTRY = {"status": str, "steps": int, "simulated": (int, float), "wall": (int, float)}
@@ -74,6 +75,8 @@ def check_series(path: Path) -> None:
 
 def read_table(path: Path) -> pd.DataFrame:
     """A table of a result. Raises InputError where it is none."""
+    from dexrepro.recordings import read_frame
+
     try:
         return read_frame(path)
     except (OSError, ValueError) as error:

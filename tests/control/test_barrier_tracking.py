@@ -37,6 +37,17 @@ def test_the_limits_of_the_barrier():
     assert shares[np.argmax([barrier_terms(s * BOUND, BOUND)[0] for s in shares])] == pytest.approx(0.609, abs=2e-3)
 
 
+@given(inside, st.sampled_from([1e-3, 1.0, 20.0]))
+def test_the_barrier_has_no_length_of_its_own(error, scale):
+    phi, slope, force = barrier_terms(error, BOUND)
+    assert barrier_terms(scale * error, scale * BOUND) == pytest.approx((scale * phi, slope, scale * force), rel=1e-6)
+
+
+def test_the_terms_are_continuous_at_the_target():
+    """phi -> z/2, where 0/0 is not computed: the error there is of the fourth order in z."""
+    assert barrier_terms(1e-9, BOUND) == pytest.approx((0.5e-9, 0.5, 1e-9), rel=1e-9)
+
+
 def test_beyond_the_barrier_the_virtual_control_points_the_wrong_way():
     assert barrier_terms(1.2 * BOUND, BOUND)[0] < 0
     assert barrier_terms(math.sqrt(2) * BOUND, BOUND)[0] == pytest.approx(0.0, abs=1e-12)

@@ -150,3 +150,36 @@ def test_the_printed_gain_has_the_claimed_rate_only_while_the_bound_shrinks_fast
         return -(gain + decay)  # -(L - v'/v), which (5.39) wants to be k_c at least
 
     assert rate(2.0) > 10.0 > rate(1.0)
+
+
+def test_the_network_adds_its_output_at_the_state_in_units_of_its_scales():
+    learner = network(gain=0.0)
+    learner.reset(np.random.default_rng(0).normal(size=(30, 2)))
+    q, dq, ddq = desired(0.3)
+    plain, learned, printed = (
+        law(learner=which, printed=forms)(at(q - 0.05, 0.0, dq + 0.3), Motion(q, dq, ddq)).torque
+        for which, forms in ((None, ()), (learner, ()), (learner, ("network",)))
+    )
+    expected = learner.output(np.concatenate([(q - 0.05) / 0.35, (dq + 0.3) / 1.2]))
+    assert np.abs(expected).min() > 1e-3
+    np.testing.assert_allclose(learned - plain, expected, rtol=1e-4)
+    np.testing.assert_allclose(printed - plain, -expected, rtol=1e-4)
+
+
+def test_a_reset_law_starts_its_bound_anew():
+    tracking, target = law(), desired(0.0)
+    first, second = (tracking(at(target[0] - 0.05, 0.0, target[1]), target).torque for _ in range(2))
+    tracking.reset(at(target[0]))
+    assert np.array_equal(tracking(at(target[0] - 0.05, 0.0, target[1]), target).torque, first)
+    assert not np.array_equal(second, first)
+    nu, gain, _ = law()._virtual_gain()
+    assert nu == pytest.approx(BOUND.nu(0.0)), "at t = 0"
+    assert gain == pytest.approx(-(10.0 + abs(BOUND.rate(0.0)[1])))
+
+
+def test_the_printed_gain_is_the_bound_s_rate_times_a_root_of_limits_and_convergence():
+    """L = -(1/b_u^2 + 1/b_l^2 + k_c^2)^(1/2) |v'/v|: the printed form of Eq. (5.38)."""
+    tracking = law(printed=["virtual_gain"])
+    tracking.bound = bound = PerformanceBound(0.15, 0.02, 2.0, lower=0.6, upper=0.8)
+    expected = -np.sqrt(1 / 0.8**2 + 1 / 0.6**2 + 10.0**2) * abs(bound.rate(0.0)[1])
+    assert tracking._virtual_gain()[1] == pytest.approx(expected)

@@ -21,3 +21,10 @@ def test_the_error_decays_as_the_chosen_critically_damped_system():
         dq = dq + dt * (torque - 3.0 * np.cos(q)) / 2.0
         q = q + dt * dq
     assert q[0] == pytest.approx(0.4 * (1 + 5 * 0.5) * np.exp(-5 * 0.5), rel=2e-3)
+
+
+def test_the_torque_is_the_inverse_dynamics_of_the_feedback():
+    law = ComputedTorque(model=Pendulum(), frequency=5.0, damping_ratio=0.4)
+    told, goal = at(np.array([0.4]), 0.0, np.array([-0.3])), Motion(np.array([0.6]), np.array([0.2]), np.array([9.0]))
+    wanted = 25.0 * 0.2 + 2 * 0.4 * 5.0 * 0.5
+    assert law(told, goal).torque == pytest.approx(2.0 * wanted + 3.0 * np.cos(0.4))

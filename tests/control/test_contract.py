@@ -5,7 +5,18 @@ from functools import partial
 import numpy as np
 import pytest
 
-from dexrepro.control.contract import build, channels, check, coriolis, memory, printed_forms, report
+from dexrepro.control.contract import (
+    Undefined,
+    Unusable,
+    build,
+    channels,
+    check,
+    coriolis,
+    memory,
+    number,
+    printed_forms,
+    report,
+)
 from dexrepro.robots.planar import PlanarChain
 
 
@@ -78,3 +89,14 @@ def test_coriolis_terms_come_from_inverse_dynamics_alone():
     assert coriolis(model, q, u, v) == pytest.approx(coriolis(model, q, v, u))
     both = coriolis(model, q, u, v) + 2.0 * coriolis(model, q, u, w)
     assert coriolis(model, q, u, v + 2.0 * w) == pytest.approx(both)
+
+
+def test_one_finite_number_in_whatever_shape_is_a_number():
+    for value in (2, 2.0, np.float32(2.0), np.array(2.0), np.array([[2.0]])):
+        assert number(value) == 2.0
+    for value in ("2", None, [2.0], np.zeros(0), np.ones(2)):
+        with pytest.raises(Unusable, match="one number is wanted"):
+            number(value)
+    for value in (np.nan, np.array([-np.inf])):
+        with pytest.raises(Undefined, match="a finite number is wanted"):
+            number(value)

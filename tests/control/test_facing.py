@@ -43,3 +43,12 @@ def test_the_printed_formula_fails_at_half_turns_alone():
         worst[angle] = np.abs(back - rotations).max()
     assert worst[np.pi - 0.1] < 1e-12
     assert worst[np.pi] > 0.1
+
+
+def test_one_orientation_or_any_batch_of_them_is_faced_alike():
+    batch = quaternions.reshape(20, 100, 4)
+    assert np.array_equal(facing(batch), facing(quaternions).reshape(batch.shape))
+    assert np.array_equal(facing(batch[3, 7]), facing(batch)[3, 7])
+    rotations = rotation_from_quaternion(batch)
+    np.testing.assert_array_equal(quaternion_from_rotation_printed(rotations[3, 7]),
+                                  quaternion_from_rotation_printed(rotations)[3, 7])  # fmt: skip

@@ -106,3 +106,60 @@ def test_the_rate_of_the_virtual_velocity_is_a_filtered_difference():
     before = controller.virtual
     controller(at(np.array([0.2, -0.1]), 0.0, rest), Motion(rest, rest, rest))
     assert controller.rate == pytest.approx((controller.virtual - before) / 1e-3 * 1e-3 / (0.004 + 1e-3))
+
+
+class Watching:
+    """Stands where the network does and keeps what it is told."""
+
+    nodes = 4
+
+    def __init__(self):
+        self.forgotten = 0
+
+    def forget(self):
+        self.forgotten += 1
+
+    def output(self, z, grow=False):
+        self.z, self.grow = z, grow
+        return np.array([0.3, -0.2])
+
+    def adapt(self, error):
+        self.error = error
+
+
+def test_the_network_s_output_is_taken_off_and_it_learns_from_the_second_error():
+    """- W^T S(z) with z = [q, dq, x_2d, dx_2d/dt], Eq. (3.27); the weights are driven by e2, Eq. (3.28)."""
+    network, place, velocity = Watching(), np.array([0.1, -0.2]), np.array([0.5, 0.3])
+    plain, learning = law(), law(network=network)
+    for k in range(2):
+        told, goal = at(place * (1 + k), 0.0, velocity), Motion(*np.zeros((3, 2)))
+        bare, torque = plain(told, goal).torque, learning(told, goal).torque
+    assert bare - torque == pytest.approx([0.3, -0.2])
+    assert network.z == pytest.approx(np.concatenate([2 * place, velocity, plain.virtual, plain.rate]))
+    assert network.grow
+    assert network.error == pytest.approx(velocity - plain.virtual)
+    learning.part = lambda error: 2 * error
+    learning(told, goal)
+    assert network.error == pytest.approx(2 * (velocity - plain.virtual))
+    assert learning.diagnostics() == {"nodes": 4}
+    assert network.forgotten == 1
+    learning.reset(told)
+    assert network.forgotten == 2
+    assert learning.virtual is None
+    learning(told, goal)
+    assert not np.any(learning.rate), "no difference to a past that is forgotten"
+
+
+def test_the_bound_is_that_of_the_scalar_comparison_system():
+    """V' = -a V^((1 + alpha)/2) - b V^((1 + beta)/2) ends within 2/(a (1 - alpha)) + 2/(b (beta - 1)).
+
+    With equal gains k and unit inertia V = e^2/2 gives a = k 2^((1 + alpha)/2); the squares of n joints' errors add up
+    to at least n^(1 - (1 + beta)/2) times their sum's power, and those of the two errors to 2^(1 - (1 + beta)/2).
+    """
+    a, b = 3.0 * 2**0.75, 3.0 * 2**1.5 * (2 * 5) ** -0.5
+    expected = 2.0 / (a * 0.5) + 2.0 / (b * 1.0)
+    assert settling_bound((1.0, 3.0, 3.0), (1.0, 3.0, 3.0), POWERS, inertia=1.0, joints=5) == pytest.approx(expected)
+    heavy = settling_bound((1.0, 3.0, 3.0), (1.0, 3.0, 3.0), POWERS, inertia=16.0, joints=5)
+    assert heavy == pytest.approx(2.0 * 16**0.75 / (a * 0.5) + 2.0 * 16**1.5 / b)
+    free = settling_bound((1.0, 3.0, 3.0), (1.0, 1e9, 1e9), POWERS, inertia=16.0, joints=5)
+    assert free == pytest.approx(expected), "then the first error is the slower one"

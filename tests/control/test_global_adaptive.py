@@ -73,15 +73,29 @@ def test_with_the_exact_dynamics_the_lyapunov_function_never_increases():
     assert energy[-1] < 1e-5
 
 
-def test_virtual_acceleration_is_the_derivative_of_the_virtual_velocity():
-    plant = PlanarPlant()
-    law = control(plant, ExactDynamics(plant))
-    law.step = 1e-6
-    q, dq, alphas = plant.inverse(np.array([1.0, 0.05])), np.array([0.4, -0.7]), []
+class ThreeLinks:
+    """Kinematics of three unit links in a plane: one joint more than the task has axes."""
+
+    def position(self, q):
+        angles = np.cumsum(q)
+        return np.array([np.cos(angles).sum(), np.sin(angles).sum()])
+
+    def jacobian(self, q):
+        angles = np.cumsum(q)
+        return np.array([[-np.sin(angles)[j:].sum() for j in range(3)], [np.cos(angles)[j:].sum() for j in range(3)]])
+
+
+@pytest.mark.parametrize(
+    ("arm", "q", "dq"),
+    [(PlanarPlant(), [-0.95, 2.1], [0.4, -0.7]), (ThreeLinks(), [-1.2, 1.4, 0.9], [0.4, -0.7, 0.5])],
+)
+def test_virtual_acceleration_is_the_derivative_of_the_virtual_velocity(arm, q, dq):
+    n, h, q, dq, alphas = len(q), 1e-5, np.array(q), np.array(dq), []
+    law = GlobalAdaptiveControl(arm, None, bound=BOUND, position_gain=30.0, velocity_gain=np.full(n, 30.0), step=h)
     for k in range(3):
-        law(tip(plant, q + k * 1e-6 * dq, dq), ellipse(k * 1e-6))
+        law(tip(arm, q + k * h * dq, dq), ellipse(k * h))
         alphas.append(law.input.copy())
-    assert alphas[1][6:8] == pytest.approx((alphas[2][4:6] - alphas[0][4:6]) / 2e-6, rel=1e-5)
+    assert alphas[1][3 * n :] == pytest.approx((alphas[2] - alphas[0])[2 * n : 3 * n] / (2 * h), rel=1e-5, abs=1e-4)
 
 
 def test_an_adaptive_network_keeps_the_bound_and_removes_the_gravity_error():
@@ -125,6 +139,28 @@ def test_switch_exceeds_one_below_the_smallest_admissible_shape():
     sizes = np.linspace(5, 20, 400)
     assert Switch(5.0, 20.0, 0.6).component(sizes, 5.0, 20.0).max() > 1.0
     assert Switch(5.0, 20.0, 1.0, True).component(sizes, 5.0, 20.0).max() > 1.0
+
+
+def test_the_square_is_of_the_argument_or_of_the_exponential():
+    """Both readings of Eq. (4.26): (1 - s) times exp((s / w)^2) or exp(s / w)^2, s = (Xi^2 - a^2) / (b^2 - a^2)."""
+    sizes = np.linspace(5.0, 20.0, 7)
+    share = (sizes**2 - 25.0) / 375.0
+    for shape in (0.8, 2.0):
+        inside, outside = (Switch(5.0, 20.0, shape, way).component(sizes, 5.0, 20.0) for way in (False, True))
+        assert inside == pytest.approx((1 - share) * np.exp(share**2 / shape**2))
+        assert outside == pytest.approx((1 - share) * np.exp(share / shape) ** 2)
+    mixed = [7.0, -3.0, 12.0]
+    assert Switch(5.0, 20.0)(mixed) == pytest.approx(np.prod(Switch(5.0, 20.0).component([7.0, 12.0], 5.0, 20.0)))
+
+
+def test_a_reset_law_starts_its_bound_anew():
+    plant = PlanarPlant()
+    law, told = control(plant, None), tip(plant, plant.inverse(np.array([1.0, 0.05])), np.array([0.4, -0.7]))
+    first, second = law(told, ellipse(0.0)).torque, law(told, ellipse(0.0)).torque
+    law.reset(told)
+    assert np.array_equal(law(told, ellipse(0.0)).torque, first)
+    assert np.array_equal(law.usage, BOUND.usage(law.error, BOUND.nu(0.0))), "at t = 0"
+    assert not np.array_equal(second, first)
 
 
 def test_switch_scales_with_the_farthest_node():

@@ -104,3 +104,27 @@ def test_without_a_disturbance_to_fear_the_gain_is_the_linear_quadratic_one():
     stiffness = np.sqrt(900.0 / 4.0)
     expected = (stiffness, np.sqrt(50.0 / 4.0 + 2 * stiffness))
     assert hinfinity_gain((900.0, 50.0), effort=4.0, attenuation=1e6) == pytest.approx(expected)
+
+
+def test_the_force_is_the_inverse_dynamics_of_the_desired_acceleration_and_the_feedback():
+    """F = M (x_d'' - K [integral e, e, e']) + n with e = x - x_d: the tip of a crank, J = diag(cos q)."""
+
+    class Crank(PointMass):
+        def jacobian(self, position):
+            return np.diag(np.cos(position))
+
+    law, dt = HInfinityTracking(Crank(friction=0.5), (5.0, 30.0, 8.0), dt=0.01), 0.01
+    q, dq = np.array([0.3, -0.4]), np.array([0.7, 0.2])
+    x, v = np.sin(q), np.cos(q) * dq
+    goal = Motion(np.array([0.1, 0.2]), np.array([-0.3, 0.4]), np.array([1.0, -2.0]))
+
+    def wanted(integral):
+        acceleration = goal.acceleration - 8.0 * (v - goal.velocity) - 30.0 * (x - goal.position) - 5.0 * integral
+        joints = (acceleration + np.sin(q) * dq**2) / np.cos(q)
+        return (2.0 * joints + 0.5 * dq + [0.0, 19.6]) / np.cos(q)
+
+    told = at(x, np.zeros(2), v, joints=(q, dq))
+    for k in (1, 2):
+        assert law(told, goal).force == pytest.approx(wanted(k * dt * (x - goal.position)), rel=1e-6)
+    law.reset(told)
+    assert law(told, goal).force == pytest.approx(wanted(dt * (x - goal.position)), rel=1e-6)

@@ -137,3 +137,31 @@ def test_the_regressor_holds_the_present_displacement_and_the_ones_before():
         assert law.regressor == pytest.approx(np.array(regressor))
         assert law.weights == pytest.approx(weights)
         assert law.estimate == pytest.approx(estimate)
+
+
+def test_the_reference_goes_no_faster_than_its_limit_either_way():
+    for force, rate in ((0.0, -0.2), (100.0, 0.2), (10.5, 0.11 * 0.5)):
+        law = proposed(speed_limit=0.2, adapt=False)
+        law.reset(at(0.0))
+        assert law(at(0.0, force)) == pytest.approx(rate * DT)
+
+
+def test_a_contact_position_that_is_told_takes_the_place_of_the_arm_s():
+    """Eq. (1.31): then the estimate errs against z_d, while the regressor still holds z_A."""
+    law = proposed()
+    law.reset(at(0.0))
+    law(at(0.3, DESIRED), 0.1)
+    assert law.weights == pytest.approx(DT * 0.1 * np.array([1.0, 0.3, 0.0, 0.0]))
+    assert law.estimate == pytest.approx(DT * 2.0 * 0.1)
+
+
+def test_a_compliant_reference_is_the_law_s_and_the_lead_of_the_impedance():
+    law, alone = proposed(), proposed()
+    impedance, lead = (PassiveImpedance(dt=DT, desired_force=DESIRED, mass=6.0, damping=2.0) for _ in range(2))
+    both = Compliant(law=law, impedance=impedance)
+    both.reset(at(0.5))
+    alone.reset(at(0.5))
+    lead.reset(at(0.0))
+    for force in (3.0, 12.0, 8.0):
+        assert both(at(0.5, force)) == pytest.approx(alone(at(0.5, force)) + lead(at(0.5, force)), rel=1e-12)
+    assert both.diagnostics().keys() == {"weights", "estimate"}

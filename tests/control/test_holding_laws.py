@@ -43,10 +43,10 @@ def test_lateral_offset_decays_with_the_time_constant_of_the_spring():
 
 
 def test_the_opposite_sign_of_the_regulation_drives_the_arms_apart():
-    law = HoldingLineRegulation(gain=1e-3, printed=False)
+    law, offset = HoldingLineRegulation(gain=1e-3, printed=False), 0.08
     for _ in range(1000):
-        law(0.08 + law.displacement)
-    assert law.displacement > 0.08
+        law(offset + law.displacement)
+    assert offset + law.displacement == pytest.approx(offset * 1.001**1000), "with the time constant of the other sign"
 
 
 def test_proportional_force_control_keeps_the_error_of_its_closed_form():
@@ -179,3 +179,17 @@ def test_known_movement_with_an_impedance_lead_holds_the_force_exactly():
         )
     )
     assert error == pytest.approx(0, abs=1e-12)
+
+
+def test_known_movement_has_the_acceleration_of_the_movement_and_none_at_the_start():
+    """Of 3 - 2 t + 0.5 t^2 the velocity differs by one step times its acceleration, 1."""
+    instants = iter(np.arange(1, 10) * DT)
+    movement = KnownMovement(
+        movement=lambda: (lambda t: (3 - 2 * t + 0.5 * t**2, t - 2))(next(instants)), stiffness=STIFFNESS, dt=DT
+    )
+    movement.reset()
+    assert (movement.position, movement.velocity) == (3 - 2 * DT + 0.5 * DT**2, DT - 2)
+    assert movement.acceleration == 0.0
+    for _ in range(3):
+        movement(0.5, 1.0)
+        assert movement.acceleration == pytest.approx(1.0)

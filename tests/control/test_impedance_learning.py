@@ -6,11 +6,16 @@ from instant import at
 
 from dexrepro.control.impedance_learning import (
     DONE,
+    EXPLORING,
+    SOLVING,
+    TRANSFERRING,
+    WAITING,
     ConstantGain,
     IntegratingReference,
     InteractionLaw,
     LearnedGain,
     StaticReference,
+    exploration_windows,
     soft_transfer,
 )
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, optimal_gain, steady_fraction
@@ -122,3 +127,71 @@ def test_at_the_balance_the_wanted_force_is_the_one_felt_exploration_included():
     share = (0.06 - surface) / COST.output
     assert law.desired_force == pytest.approx(5.0 * (0.05 - surface) - 0.3 * share + 0.07)
     assert 5.0 * (reference.target - surface) - 0.3 * share + 0.07 == pytest.approx(force)
+
+
+def test_a_gain_given_in_advance_waits_as_long_as_it_is_told():
+    gain = ConstantGain([-5.0, 0.3], initial=[-9.0, 0.1], wait=0.01, dt=DT)
+    seen = []
+    for _ in range(12):
+        gain.update(0.0, 0.0, 0.0)
+        seen.append(gain.gain)
+    assert seen == [[-9.0, 0.1]] * 10 + [[-5.0, 0.3]] * 2
+    gain.reset()
+    assert gain.gain == [-9.0, 0.1]
+    assert ConstantGain([-5.0, 0.3]).gain == [-5.0, 0.3]
+
+
+def test_the_phases_of_the_algorithm_last_as_long_as_they_are_told():
+    """Algorithm 8.1 on a known object: K_0 until whole windows are solved, then half a sine of T_s to the optimum."""
+    gain, phases = learned_gain(wait=0.3, explore=1.1, solve=0.2, transfer=0.4, window=0.25), []
+    for k in range(2400):
+        x, rate = 0.01 * np.sin(7.0 * k * DT), 0.07 * np.cos(7.0 * k * DT)
+        gain.update(x, 0.0, -(10.0 * x + 0.01 * rate))
+        phases.append(gain.phase)
+        if gain.phase == EXPLORING:
+            t = (k - 300) * DT
+            assert gain.exploration == pytest.approx(sum(0.05 / n * np.sin(n * t) for n in range(1, 9)), abs=1e-12)
+        else:
+            assert gain.exploration == 0.0
+        if gain.phase < TRANSFERRING:
+            assert gain.gain == INITIAL
+        if phases.count(TRANSFERRING) == 201 and gain.phase == TRANSFERRING:
+            assert gain.gain == pytest.approx((np.array(INITIAL) + gain.learned.gain[0]) / 2)
+    begins = [phases.index(phase) for phase in (WAITING, EXPLORING, SOLVING, TRANSFERRING, DONE)]
+    assert begins == [0, 300, 1551, 1751, 2151], "five windows of 0.25 s and the sample that ends them"
+    assert gain.gain == pytest.approx(gain.learned.gain[0])
+    assert gain.samples.shape == (1251, 3)
+    gain.reset()
+    assert (gain.phase, gain.gain, gain.learned, len(gain.samples)) == (WAITING, INITIAL, None, 0)
+
+
+def test_the_auxiliary_signal_obeys_its_exosystem():
+    """s' = M s from its start; without M the recorded s is kept."""
+    samples = np.random.default_rng(0).normal(size=(11, 3))
+    kept = exploration_windows(samples, 0.1, 5, None)
+    made = exploration_windows(samples, 0.1, 5, -2.0, start=3.0)
+    replaced = samples.copy()
+    replaced[:, 1] = 3.0 * np.exp(-2.0 * 0.1 * np.arange(11))
+    again = exploration_windows(replaced, 0.1, 5, None)
+    for name in vars(made):
+        assert np.array_equal(getattr(made, name), getattr(again, name))
+    assert any(not np.array_equal(getattr(made, name), getattr(kept, name)) for name in vars(made))
+
+
+def test_a_surface_found_wrongly_moves_where_the_indentation_counts_from():
+    law = InteractionLaw(ConstantGain([-5.0, 0.3]), StaticReference(20.0, DT), COST.output, 1, 1e-6, 5.0,
+                         surface_error=0.004)  # fmt: skip
+    law(at(0.01, -0.1), Motion(0.05, 0.0, 0.0))
+    assert law.surface == pytest.approx(0.014)
+    assert law.desired_force == pytest.approx(5.0 * (0.01 - 0.014) - 0.3 * (0.05 - 0.014) / COST.output)
+    law.reset()
+    assert law.surface is None
+    state = law(at(0.01, 1e-7), Motion(0.05, 0.2, 0.0))
+    assert (state.position, state.velocity, law.desired_force) == (0.05, 0.2, 0.0), "no contact yet"
+
+
+def test_the_references_are_the_systems_they_are_called_after():
+    """b (kappa (tau_e - f_d) - v) and r^2 (x_b - x) - 2 r v."""
+    state = Motion(0.2, 0.3, 0.0)
+    assert IntegratingReference(0.5, 40.0, DT).acceleration(state, 2.0, 0.7, 9.0) == pytest.approx(40 * (0.65 - 0.3))
+    assert StaticReference(20.0, DT).acceleration(state, 2.0, 0.7, 0.9) == pytest.approx(400 * 0.7 - 40 * 0.3)

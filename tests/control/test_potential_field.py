@@ -59,3 +59,18 @@ def test_a_follower_that_starts_on_the_partners_side_is_pulled_through_the_objec
     f.reset(np.array([0.0, 0.05, 0.0]))
     path = np.array([f(np.zeros(3), AXIS, 0.38 * AXIS) for _ in range(2000)])
     assert np.linalg.norm(path - 0.38 * AXIS, axis=1).min() < 0.15
+
+
+@pytest.mark.parametrize(("distance", "third"), [(0.15, 1.8 * 0.15), (0.30, 1.8 * 0.30), (0.38, 0.30)])
+def test_the_three_subfields_stand_at_the_object_behind_it_and_before_the_partner(distance, third):
+    """X_o, X_o + d_2 z and X_D + d_3 z with d_3 = varpi rho of a near object, else rho_D,o: Eqs. (1.19), (1.20)."""
+    f, partner = field(), np.array([0.1, -0.2, 0.3])
+    f.place(partner, AXIS, partner + distance * AXIS)
+    np.testing.assert_allclose(f.points, partner + np.outer([distance, distance + 0.25, third], AXIS))
+
+
+def test_weights_that_are_given_stay():
+    f = field(weights=(0.2, 0.3, 0.5))
+    f.place(np.zeros(3), AXIS, 0.5 * AXIS)
+    assert f.active == (0.2, 0.3, 0.5)
+    np.testing.assert_allclose(f.force(0.9 * AXIS), (-0.3 * (0.9 - 0.75) - 0.5 * (0.9 - 0.3)) * AXIS, atol=1e-15)

@@ -78,3 +78,30 @@ def test_tool_axis_passes_through_the_centre_once_it_can_be_told():
     assert tool_axis(centre, centre, target, 0.08) == pytest.approx([0, 0.6, -0.8])
     aside = np.array([0.05, 0.15, -0.2])
     assert tool_axis(aside, centre, target, 0.08) == pytest.approx(aside / np.linalg.norm(aside))
+
+
+@pytest.mark.parametrize("shift", [np.zeros(3), np.array([0.4, -0.2, 0.7])])
+def test_nothing_depends_on_where_the_origin_is(shift):
+    """The force as printed is K (to - link) (to . link) / (L^2): from the definition of R with e = P_E - P_EA."""
+    wrist, tip, centre = np.array([0.0, 0, 0]), np.array([0.0, 0.1, -0.4]), np.array([0.1, 0, -0.1])
+    to, link = tip - centre, tip - wrist
+    expected = 300.0 * (to - link) * (to @ link) / (link @ link)
+    assert printed_centre_force(centre + shift, tip + shift, wrist + shift, 300.0) == pytest.approx(expected)
+    assert not printed_centre_force(tip + shift, tip + shift, wrist + shift, 300.0).any()
+    target, aside = np.array([0.0, 0.3, -0.4]), np.array([0.05, 0.15, -0.2])
+    axis = tool_axis(aside + shift, shift, target + shift, 0.08)
+    assert axis == pytest.approx(aside / np.linalg.norm(aside))
+    assert tool_axis(0.1 * aside + shift, shift, target + shift, 0.08) == pytest.approx([0, 0.6, -0.8])
+
+
+def test_the_nearest_point_lies_on_one_of_the_segments_or_at_a_corner():
+    corners = [np.array(corner) for corner in ([0.0, 0, 0], [1.0, 0, 0], [1.0, 1, 0])]
+    for centre, segment, point in (
+        ([0.3, 0.2, 0.1], 0, [0.3, 0, 0]),
+        ([-0.5, 0.1, 0.0], 0, [0, 0, 0]),
+        ([0.9, 0.4, 0.0], 1, [1, 0.4, 0]),
+        ([1.2, 3.0, 0.0], 1, [1, 1, 0]),
+    ):
+        found, place = closest_point(np.array(centre), corners)
+        assert found == segment
+        assert place == pytest.approx(point)

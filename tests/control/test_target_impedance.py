@@ -21,6 +21,17 @@ def test_the_tip_obeys_the_target_impedance_under_the_measured_force():
     assert ay == pytest.approx(100.0**2 * (0.7 - y) - 200.0 * vy, abs=1e-8)
 
 
+def test_motion_that_leaves_the_tip_where_it_is_decays_at_its_own_rate():
+    """Along n with J n = 0 the law asks for n . q'' = -decay n . q', whatever the tip does."""
+    law = TargetImpedance(model=ARM, mass=0.5, damping=2.0, stiffness=10.0, desired_force=1.0, null_damping=7.0)
+    q, dq, force = [1.0, 0.8, 0.6], [0.2, -0.4, 0.3], (1.7, 0.4)
+    torque = law(at(None, force, joints=(q, dq)), Motion((0.1, 0.7), 0.0, 0.0)).torque
+    joints = ARM.acceleration(q, dq, np.add(torque, ARM.tip_torque(q, force)))
+    idle = np.cross(*np.array(ARM.jacobian(q)))
+    assert abs(idle @ dq) > 1e-3
+    assert idle @ joints == pytest.approx(-7.0 * (idle @ dq))
+
+
 def test_against_a_spring_the_force_settles_where_the_stiffnesses_balance():
     """e (k + k_o) = k k_o (x_c - f_d / k_o - x_r): Eq. (2.30)."""
     law = TargetImpedance(model=ARM, mass=0.5, damping=10.0, stiffness=10.0, desired_force=1.0)

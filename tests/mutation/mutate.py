@@ -1,12 +1,12 @@
-"""Wrong laws that the tests have to notice: one small change of the library at a time, its folder's tests against it.
+"""Wrong laws that the tests have to notice: one small change of the library at a time, its tests against it.
 
     python tests/mutation/mutate.py networks control/holding --share 0.2
 
 Each argument is a folder or a module of dexrepro/. A change turns a sign, an operator, a comparison, a factor or a
-function, drops an assignment, or swaps two that write to one place. Tests that import the module run first, the others
-of its folder after them; parameters' defaults, messages and annotations are left alone. What survives is printed,
-unless ``accepted.txt`` says of it, or of its line, why it changes nothing; the exit status is 1 where the share
-killed is below ``--least``.
+function, drops an assignment, or swaps two that write to one place; parameters' defaults, messages and annotations are
+left alone. The tests beside a folder are collected once; for each change those run that call the changed function,
+shortest first, in a process of their own. What survives is printed, unless ``accepted.txt`` says of it, or of its line,
+why it changes nothing; the exit status is 1 where the share killed is below ``--least``.
 """
 
 from __future__ import annotations
@@ -14,21 +14,46 @@ from __future__ import annotations
 import argparse
 import ast
 import copy
+import gc
 import importlib.abc
 import importlib.util
+import inspect
 import os
+import pickle
 import random
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import CodeType, ModuleType
+from types import CodeType, FrameType, FunctionType, ModuleType
 
 import pytest
+from _pytest.runner import runtestprotocol
+
+Key = tuple[str, str, int]
+"""File, name and line of a function."""
+Mutant = tuple[int, str, CodeType]
+"""Line, description and code of a module with one change."""
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
+PACKAGE = str(ROOT / "dexrepro")
+OPTIONS = ("-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not slow")
+SCORE = ROOT / "docs/mutation.md"
+HEAD = """# Mutation score of the library
+
+Small changes that make a law another (a sign, a factor, an operator, a dropped line; see `tests/mutation/mutate.py`),
+and how many of them the tests notice. Changes that `tests/mutation/accepted.txt` says, with a reason, to change nothing
+are not tried. Written by `make mutation`.
+
+| folder | tried | noticed | equivalent | score |
+| --- | --- | --- | --- | --- |"""
+PARTS = """
+Share: how many of the possible changes of a module were drawn, with a fixed seed.
+
+| module | share | tried | noticed | equivalent | score |
+| --- | --- | --- | --- | --- | --- |"""
 OPERATORS = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult}
 COMPARISONS = {
     ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
@@ -93,7 +118,7 @@ def sites(tree: ast.AST) -> Iterator[ast.AST]:
             yield from sites(child)
 
 
-def mutants(path: Path) -> Iterator[tuple[int, str, CodeType]]:
+def mutants(path: Path) -> Iterator[Mutant]:
     """Line, description and code of every mutant of a file."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     lines = path.read_text(encoding="utf-8").splitlines()
@@ -138,20 +163,154 @@ class Mutated(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         exec(self.code, module.__dict__)
 
 
-def passes(name: str, path: Path, code: CodeType | None, tests: list[Path], limit: float) -> bool:
-    """Whether tests pass, in a process of their own and within a time [s]."""
-    if not tests:
-        return True
+def in_a_process(work: Callable[[], object], limit: float) -> object:
+    """What a function returns in a process of its own; None where it takes more than a time [s] of the processor."""
+    reader, writer = os.pipe()
     child = os.fork()
     if child == 0:
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.setitimer(signal.ITIMER_REAL, limit)
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_PROF, limit)
         null = os.open(os.devnull, os.O_WRONLY)
         os.dup2(null, 1), os.dup2(null, 2)
+        with open(writer, "wb") as pipe:
+            pickle.dump(work(), pipe)
+        os._exit(0)
+    os.close(writer)
+    with open(reader, "rb") as pipe:
+        said = pipe.read()
+    return pickle.loads(said) if os.waitpid(child, 0)[1] == 0 else None
+
+
+def passes(name: str, path: Path, code: CodeType | None, tests: list[Path], limit: float) -> bool:
+    """Whether tests pass with a module that is imported with another code, within a time [s]."""
+
+    def work() -> int:
         sys.meta_path.insert(0, Mutated(name, path, code))
-        options = ["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not slow"]
-        os._exit(int(pytest.main([*options, *map(str, tests)])))
-    return os.waitpid(child, 0)[1] == 0
+        return int(pytest.main([*OPTIONS, "-x", *map(str, tests)]))
+
+    return in_a_process(work, limit) == 0
+
+
+# ----------------------------------------------------------------------------------- changing functions where they are
+
+
+def changed(old: CodeType, new: CodeType) -> CodeType | None:
+    """The function that a change of its module is in; None where it is in what runs when the module is imported."""
+
+    def inner(code: CodeType) -> list[CodeType]:
+        return [item for item in code.co_consts if isinstance(item, CodeType)]
+
+    def plain(code: CodeType) -> tuple[object, ...]:
+        return code.co_code, code.co_names, [item for item in code.co_consts if not isinstance(item, CodeType)]
+
+    if old.co_flags & inspect.CO_OPTIMIZED:
+        return new
+    if plain(old) != plain(new):
+        return None
+    return next((changed(a, b) for a, b in zip(inner(old), inner(new), strict=True) if a != b), None)
+
+
+def key_of(code: CodeType) -> Key:
+    return code.co_filename, code.co_qualname, code.co_firstlineno
+
+
+class Survey:
+    """A plugin of pytest: collects tests once, and runs for each mutant those that call the changed function."""
+
+    def __init__(self, modules: list[tuple[Path, list[Mutant]]]) -> None:
+        self.modules = modules
+        self.at_import: set[Key] = set()
+        self.survived: dict[tuple[Path, int], str] = {}  # path and number of a mutant: "import" where that may kill it
+        self.failing: list[str] = []
+        self.out = os.dup(1)
+
+    def begin(self) -> None:
+        """Watch which functions are called while modules are imported and tests collected."""
+        sys.settrace(self._imported)
+
+    def _imported(self, frame: FrameType, event: str, _: object) -> None:
+        self.at_import.add(key_of(frame.f_code))
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        sys.settrace(None)
+        runs = in_a_process(lambda: [self._trace(item) for item in session.items], 1800.0)
+        live: dict[Key, list[FunctionType]] = {}
+        for function in gc.get_objects():
+            if isinstance(function, FunctionType) and PACKAGE in function.__code__.co_filename:
+                live.setdefault(key_of(function.__code__), []).append(function)
+        self.failing = [item.nodeid for item, (passed, *_) in zip(session.items, runs) if not passed]
+        for path, found in self.modules:
+            old = compile(path.read_text(encoding="utf-8"), str(path), "exec")
+            for number, (_, _, code) in enumerate(found):
+                function = changed(old, code)
+                key = None if function is None else key_of(function)
+                tests = sorted(
+                    (duration, k) for k, (passed, duration, called) in enumerate(runs) if passed and key in called
+                )
+                limit = 5 + 4 * sum(duration for duration, _ in tests)
+                items = [session.items[k] for _, k in tests]
+                if key is None or not live.get(key):
+                    self.survived[path, number] = "import"
+                elif not items or in_a_process(lambda: _hold(live[key], function, items), limit):  # noqa: B023
+                    self.survived[path, number] = "import" if key in self.at_import else ""
+                    if key not in self.at_import:
+                        os.write(self.out, said(path, found[number]).encode())
+        return True
+
+    def _trace(self, item: pytest.Item) -> tuple[bool, float, set[Key]]:
+        """Whether a test passes, its time [s] of the processor, and the functions of the package that it calls."""
+        called: set[Key] = set()
+
+        def trace(frame: FrameType, event: str, _: object) -> None:
+            if PACKAGE in frame.f_code.co_filename:
+                called.add(key_of(frame.f_code))
+
+        start = time.process_time()
+        sys.settrace(trace)
+        passed = _run(item)
+        sys.settrace(None)
+        return passed, time.process_time() - start, called
+
+
+def _run(item: pytest.Item) -> bool:
+    return all(report.outcome != "failed" for report in runtestprotocol(item, log=False, nextitem=None))
+
+
+def _hold(functions: list[FunctionType], code: CodeType, items: list[pytest.Item]) -> bool:
+    """Whether tests hold with another code in the place of a function's."""
+    for function in functions:
+        function.__code__ = code
+    return all(_run(item) for item in items)
+
+
+# ------------------------------------------------------------------------------------------------------------ the score
+
+
+def survey(folder: str, modules: list[tuple[Path, list[Mutant]]]) -> tuple[list[str], dict[tuple[Path, int], str]]:
+    """Tests that fail as they are, and the mutants of modules of one folder that no test notices."""
+    beside = ROOT / "tests" / folder
+    plugin = Survey(modules)
+
+    def work() -> object:
+        plugin.begin()
+        pytest.main([*OPTIONS, str(beside)], plugins=[plugin])
+        return plugin.failing, plugin.survived
+
+    failing, survived = in_a_process(work, 1e6)
+    tests = {test: test.read_text("utf-8") for test in sorted(beside.glob("test_*.py"))}
+    for (path, number), why in list(survived.items()):
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        near = [test for test, text in tests.items() if name in text or f"_{path.stem}.py" in test.name] or [*tests]
+        mutant = dict(modules)[path][number]
+        if why and not passes(name, path, mutant[2], near, 300.0):
+            del survived[path, number]
+        elif why:
+            print(said(path, mutant), end="", flush=True)
+    return failing, survived
+
+
+def said(path: Path, mutant: Mutant) -> str:
+    return f"{path.relative_to(ROOT / 'dexrepro')}:{mutant[0]}: {mutant[1]}\n"
 
 
 def main() -> int:
@@ -159,58 +318,68 @@ def main() -> int:
     parser.add_argument("places", nargs="+", help="folders or modules of dexrepro/: networks, control/holding")
     parser.add_argument("--share", type=float, default=1.0, help="share of the mutants to try, drawn with a fixed seed")
     parser.add_argument("--least", type=float, default=0.9, help="smallest share of killed mutants")
+    parser.add_argument("--write", action="store_true", help=f"the score into {SCORE.relative_to(ROOT)}")
     options = parser.parse_args()
+    os.environ |= {"OPENBLAS_NUM_THREADS": "1"}
     import hypothesis
     import numpy  # noqa: F401
 
-    hypothesis.settings.register_profile(
-        "mutation",
-        database=None,
-        deadline=None,
-        derandomize=True,
-        phases=[hypothesis.Phase.explicit, hypothesis.Phase.generate],
-    )
+    phases = [hypothesis.Phase.explicit, hypothesis.Phase.generate]
+    hypothesis.settings.register_profile("mutation", database=None, deadline=None, derandomize=True, phases=phases)
     hypothesis.settings.load_profile("mutation")
     os.chdir(ROOT)
-    accepted = [line.rpartition("  # ")[0] for line in (HERE / "accepted.txt").read_text("utf-8").splitlines()]
-    tried = killed = 0
-    for place in options.places:
-        at = ROOT / "dexrepro" / place
-        for path in sorted(at.rglob("*.py")) if at.is_dir() else [at.with_suffix(".py")]:
+    accepted = {line.rpartition("  # ")[0] for line in (HERE / "accepted.txt").read_text("utf-8").splitlines()}
+    scores: dict[str, tuple[int, int, int]] = {}
+    for folder in dict.fromkeys(Path(place).parts[0] for place in options.places):
+        modules, equivalent = [], {}
+        places = [ROOT / "dexrepro" / place for place in options.places if Path(place).parts[0] == folder]
+        for path in [
+            p for at in places for p in (sorted(at.rglob("*.py")) if at.is_dir() else [at.with_suffix(".py")])
+        ]:
             relative = path.relative_to(ROOT / "dexrepro")
-            a, b = survey(path, relative, options.share, accepted)
-            tried, killed = tried + a, killed + b
+            draw = random.Random(str(relative))
+            chosen = [mutant for mutant in mutants(path) if draw.random() < options.share]
+            left = [(line, text, code) for line, text, code in chosen
+                    if not {f"{relative}: {text}", f"{relative}: {text.partition('  [')[0]}"} & accepted]  # fmt: skip
+            modules.append((path, left))
+            equivalent[path] = len(chosen) - len(left)
+        failing, survived = survey(folder, modules)
+        for test in failing:
+            print(f"left out, failing as it is: {test}")
+        for path, found in modules:
+            relative = path.relative_to(ROOT / "dexrepro")
+            killed = sum((path, number) not in survived for number in range(len(found)))
+            if found or equivalent[path]:
+                scores[str(relative)] = (len(found), killed, equivalent[path])
+                print(f"{relative}: {killed} of {len(found)}", flush=True)
+    tried, killed = (sum(score[k] for score in scores.values()) for k in (0, 1))
     print(f"{killed} of {tried} wrong laws noticed ({100 * killed / max(tried, 1):.1f} %)")
+    if options.write:
+        write_score(scores, options.share)
     return int(killed < options.least * tried)
 
 
-def survey(path: Path, relative: Path, share: float, accepted: list[str]) -> tuple[int, int]:
-    """Number of mutants of one module that were tried and that its tests killed."""
-    name = ".".join(("dexrepro", *relative.with_suffix("").parts))
-    beside = sorted((ROOT / "tests" / relative.parts[0]).glob("test_*.py"))
-    near = [test for test in beside if name in test.read_text("utf-8") or f"_{relative.stem}.py" in test.name]
-    far = [test for test in beside if test not in near]
-    draw = random.Random(str(relative))
-    chosen = [mutant for mutant in mutants(path) if draw.random() < share]
-    chosen = [(line, text, code) for line, text, code in chosen
-              if not {f"{relative}: {text}", f"{relative}: {text.partition('  [')[0]}"} & set(accepted)]  # fmt: skip
-    if not chosen:
-        return 0, 0
-    times = []
-    for tests in (near, far):
-        start = time.perf_counter()
-        if not passes(name, path, None, tests, 600.0):
-            print(f"{relative}: left out, failing as it is: {', '.join(t.name for t in tests)}", flush=True)
-            tests.clear()
-        times.append(3 * (time.perf_counter() - start) + 5)
-    killed = 0
-    for line, text, code in chosen:
-        if all(passes(name, path, code, tests, limit) for tests, limit in zip((near, far), times)):
-            print(f"{relative}:{line}: {text}", flush=True)
-        else:
-            killed += 1
-    print(f"{relative}: {killed} of {len(chosen)}", flush=True)
-    return len(chosen), killed
+def write_score(scores: dict[str, tuple[int, int, int]], share: float) -> None:
+    """Renew the lines of the modules that were tried in the table of docs/."""
+    written = SCORE.read_text("utf-8").splitlines() if SCORE.exists() else []
+    known = {line.split(" | ")[0].lstrip("| `").rstrip("`"): line for line in written if line.startswith("| `")}
+    for name, numbers in scores.items():
+        cells = (
+            f"`{name}`",
+            f"{100 * share:.0f} %",
+            *map(str, numbers),
+            f"{100 * numbers[1] / max(numbers[0], 1):.0f} %",
+        )
+        known[name] = f"| {' | '.join(cells)} |"
+    lines = [known[name] for name in sorted(known) if (ROOT / "dexrepro" / name).exists()]
+    folders = {}
+    for line in lines:
+        name, _, tried, killed, equal, _ = (cell.strip(" `") for cell in line.strip("|").split("|"))
+        for folder in (name.partition("/")[0], "all"):
+            folders[folder] = [a + int(b) for a, b in zip(folders.get(folder, [0, 0, 0]), (tried, killed, equal))]
+    sums = [f"| {name} | {tried} | {killed} | {equal} | {100 * killed / max(tried, 1):.1f} % |"
+            for name, (tried, killed, equal) in sorted(folders.items(), key=lambda item: item[0] == "all")]  # fmt: skip
+    SCORE.write_text("\n".join([HEAD, *sums, PARTS, *lines, ""]), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -60,3 +60,14 @@ def test_a_reset_network_knows_only_what_it_is_given():
     assert network.weights.tolist() == [[3.0], [0.0]]
     network.reset()
     assert network.output([0.4]) == pytest.approx([0.0])
+
+
+def test_it_reports_nodes_and_the_features_at_its_last_input():
+    network = AdaptiveNetwork(Gaussians([[0.0], [1.0]], 1.0), outputs=1, gain=1.0, leakage=0.0, step=1e-3)
+    assert network.diagnostics() == {"nodes": 2, "feature_energy": 0.0, "activation": 0.0}
+    network.output([0.5])
+    assert Gaussians.features_per_node == 1
+    share = np.exp(-0.25)
+    assert network.diagnostics() == pytest.approx({"nodes": 2, "feature_energy": 2 * share**2, "activation": share})
+    network.output([2.0])
+    assert network.diagnostics()["activation"] == pytest.approx(np.exp(-1.0)), "the largest"

@@ -32,6 +32,13 @@ def test_distance_is_measured_from_the_mean_of_the_nearest_centres():
     assert basis.centres[3] == pytest.approx([2.6])
 
 
+def test_fewer_centres_than_neighbours_are_all_of_them():
+    basis = GrowingGaussians(1, width=1.0, threshold=1.5, neighbours=3)
+    basis.reset([[1.0], [3.0]])
+    assert walk(basis, [[3.4], [3.6]]) == [2, 3]  # their mean is 2
+    assert basis.centres[2] == pytest.approx([3.6])
+
+
 def test_the_nearest_centres_are_found_among_many():
     rng = np.random.default_rng(0)
     for _ in range(10):

@@ -9,6 +9,7 @@ import numpy as np
 from dexrepro.chapters.chapter3.scene import ARM, centreline, gripper_arm
 from dexrepro.control.remote_centre import closest_point, tool_axis
 from dexrepro.experiment import Config, Drawing, Recording
+from dexrepro.report import style
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.rotations import tilt
 
@@ -27,8 +28,6 @@ def describe(config: Config) -> str:
 
 def picture(image: Any, finding: str) -> Drawing:
     """One rendered view."""
-    from dexrepro.report import style
-
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.7)
     axes.imshow(style.trimmed({"view": image})["view"])
     axes.set_axis_off()
@@ -38,8 +37,6 @@ def picture(image: Any, finding: str) -> Drawing:
 
 def pictures(images: dict[str, Any], finding: str) -> Drawing:
     """Rendered views side by side, each with its label."""
-    from dexrepro.report import style
-
     figure, grid = style.subplots(1, len(images), height=2.9)
     for axes, (label, image) in zip(grid, style.trimmed(images).items()):
         axes.imshow(image)
@@ -51,8 +48,6 @@ def pictures(images: dict[str, Any], finding: str) -> Drawing:
 
 def steps(recording: Recording, config: Config) -> Drawing:
     """The four instants of Fig. 3.6."""
-    from dexrepro.report import style
-
     approach, insertion, _ = config.phases
     labels = {
         "start": "(a) 0 s:\nstart",
@@ -72,8 +67,6 @@ def steps(recording: Recording, config: Config) -> Drawing:
 
 def orientation(recording: Recording, config: Config) -> Drawing:
     """Fig. 3.2 from a recorded instant half-way to the opening."""
-    from dexrepro.report import style
-
     index = int(np.abs(recording.time - config.phases[0] / 2).argmin())
     tip, rotation = forward(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])
     centre, target = np.array(config.centre), np.array(config.target)
@@ -94,8 +87,6 @@ def orientation(recording: Recording, config: Config) -> Drawing:
 
 def shortest_distance(recording: Recording, config: Config) -> Drawing:
     """Fig. 3.3 from a recorded instant half-way to the target."""
-    from dexrepro.report import style
-
     time = config.phases[0] + config.phases[1] / 2
     index = int(np.abs(recording.time - time).argmin())
     corners = centreline(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])

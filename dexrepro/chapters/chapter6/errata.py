@@ -77,7 +77,8 @@ ERRATA = (
         "(6.9)",
         "reading",
         "A matter of scaling: a logarithm without unit beside the square of a length. With the printed gains the "
-        "barrier outweighs k_2 only where 1 - (e/h)^2 is below 1e-6 to 3e-5; the tracking gains do the work, and "
+        "barrier outweighs k_2 only where 1 - (e/h)^2 is below {barrier_anatomy.feedforward.half_gap_one:.0e} (tau = "
+        "duration) or {barrier_anatomy.tau1_feedforward.half_gap_one:.0e} (1 s); the tracking gains do the work, and "
         "fixed steps pass over so thin a layer.",
         "Barrier weight H^2, or the discrete projection.",
         switch="planar_constraint.cdmp.weight=one",

@@ -84,7 +84,7 @@ def spline_reference(config: Config, movement: Trajectory) -> tuple[Reference, A
     return differentiable(at, points, movement.time), points, (leave, resume)
 
 
-def extended_paths(config: Config, lesson: Lesson, steps: int) -> list[Array]:
+def extended_paths(config: Config, lesson: Lesson, steps: int) -> list[Trajectory]:
     """Reference by extended primitives: new goals and starts for the learned sub-skills.
 
     "subskill": sub-skill 1 ends at the arc's start, sub-skill 2 begins at its end. "local": sub-skill 2 is cut at the
@@ -95,7 +95,7 @@ def extended_paths(config: Config, lesson: Lesson, steps: int) -> list[Array]:
     if config.reference.intervals == "subskill":
         one = first.rollout(lesson.durations[0] / steps, horizon=lesson.durations[0], goal=around[0])
         two = second.rollout(lesson.durations[1] / steps, horizon=lesson.durations[1], start=around[-1])
-        return [one.position, two.position]
+        return [one, two]
     movement = second.rollout(lesson.durations[1] / steps, horizon=lesson.durations[1])
     _, _, (leave, resume) = spline_reference(config, movement)
     paths = []
@@ -103,7 +103,7 @@ def extended_paths(config: Config, lesson: Lesson, steps: int) -> list[Array]:
         time = movement.time[part] - movement.time[part][0]
         pieces = max(1, len(time) // 100)
         piece = learning.learn(time[::pieces], movement.position[part][::pieces], config.dmp)
-        paths.append(piece.rollout(time[-1] / steps, horizon=time[-1], start=start, goal=goal).position)
+        paths.append(piece.rollout(time[-1] / steps, horizon=time[-1], start=start, goal=goal))
     return paths
 
 

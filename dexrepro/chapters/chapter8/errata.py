@@ -30,11 +30,17 @@ ERRATA = (
         "E8.03",
         "(8.38)-(8.40)",
         "reading",
-        "The laws have no adaptation rate. With rate 1 and leakage 5 the networks supply about 0.1 of 14 N, an extra "
-        "damping of 0.5 to 5 % of Kp. (8.36) is consistent with rate 1; rates may be unprinted.",
+        "The laws have no adaptation rate. With rate 1 and leakage 5 the networks supply "
+        "{circle_tracking.broad_unit.network_force:.2g} N, with tuned rates {circle_tracking.broad.network_force:.2g} "
+        "N. (8.36) is consistent with rate 1; rates may be unprinted.",
         "Rates Gamma, given beside the printed 1.",
         "'circle_tracking.networks.rates=[1,1,1]'",
-        (f"{CIRCLE}.broad_unit.network_force", f"{CIRCLE}.broad.network_force"),
+        (
+            f"{CIRCLE}.broad_unit.network_force",
+            f"{CIRCLE}.broad.network_force",
+            f"{CIRCLE}.friction_broad_unit.early_y",
+            f"{CIRCLE}.orbit_left_unit.bound_used",
+        ),
     ),
     Erratum(
         "E8.04",
@@ -49,7 +55,9 @@ ERRATA = (
         "(8.27), (8.31)",
         "error",
         "tau_e acts on the robot with a plus in (8.1), (8.6) and with a minus in (8.5), (8.27): the plus in (8.31) "
-        "cancels it with (8.27) and doubles it with (8.1). The simulation cannot tell which (0.3 mm either way).",
+        "cancels it with (8.27) and doubles it with (8.1). In the simulation the error in x is "
+        "{unknown_object.force_sign_printed.max_error_x:.2f} mm with it, {unknown_object.soft.max_error_x:.2f} mm "
+        "without: too little to tell which.",
         "-tau_e in (8.31) with (8.1) and (8.6).",
         "unknown_object.law.printed=true",
         (f"{OBJECT}.force_sign_printed.max_error_x", f"{OBJECT}.soft.max_error_x"),

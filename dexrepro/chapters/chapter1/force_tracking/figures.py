@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 from dexrepro.robots.planar import PlanarChain
 
 from .experiment import CASES, LATE
@@ -40,8 +41,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_arms(recording: Recording, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(1, 4, height=1.95, sharex=True, sharey=True)
     chains = [PlanarChain(config.arm.lengths, config.arm.masses, tuple(base)) for base in config.bases.values()]
     for axis, instant in zip(axes, np.linspace(0, recording.time[-1], 4)):
@@ -66,8 +65,6 @@ def _draw_arms(recording: Recording, config: Config) -> Drawing:
 
 
 def _draw_errors(recordings: Recordings, metrics: Any) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(4, 3, height=6.6, sharex=True, sharey="row")
     for column, case in enumerate(CASES):
         for law, role in ROLES.items():

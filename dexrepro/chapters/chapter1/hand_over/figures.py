@@ -5,6 +5,7 @@ from __future__ import annotations
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "1.C": Figure(
@@ -19,10 +20,8 @@ TABLES = {"T1.G": "Hand-over from the field to the force law"}
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"latched", "bare"} <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     figure, axes = style.subplots(2, 2, height=2.8, sharex=True, sharey="row", height_ratios=(2, 1))
-    for column, (case, role) in enumerate((("latched", "book"), ("bare", "printed"))):
+    for column, (case, role, word) in enumerate((("latched", "book", "Latch"), ("bare", "printed", "Bare comparison"))):
         recording = recordings[case]
         part = recording.time > 1.0
         axes[0, column].plot(recording.time[part], recording["sensed"][part], color=style.PLAIN, linewidth=0.5,
@@ -34,7 +33,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
                              linewidth=0.7)  # fmt: skip
         axes[1, column].set(xlabel="Time [s]", yticks=(0, 1), yticklabels=("field", "force law"))
         times = metrics[case]["switches"]
-        word = "Latch" if case == "latched" else "Bare comparison"
         axes[0, column].set_title(f"{word}: {times} switch{'' if times == 1 else 'es'}")
     axes[0, 0].set_ylabel("Contact force [N]")
     axes[0, 0].set_ylim(-0.15, 3.4)

@@ -38,8 +38,8 @@ CLAIMS = (
         note="Largest force error at the end against that after a third of the run, for the smallest of five gains: "
         "{lyapunov.growth.growth_0p12:.2f} over a short run, in which it only grows, "
         "{lyapunov.growth_long.growth_0p12:.2g} over one six times as long (E1.14). Routh's condition for the law as "
-        "built about z = 0 is N (1 - k beta) < L (L + k alpha), here L > {lyapunov.growth.bound:.3f}: below it the error "
-        "grows before it decays. The control has a negative L; with none at all the ratio is "
+        "built about z = 0 is N (1 - k beta) < L (L + k alpha), here L > {lyapunov.growth.bound:.3f}: below it the "
+        "error grows before it decays. The control has a negative L; with none at all the ratio is "
         "{lyapunov.growth_long.growth_0:.2g}.",
     ),
 )

@@ -44,13 +44,8 @@ class Object:
         self.body, self.path, self.period = body, path, period
 
     def bind(self, world: Any) -> Any:
-        import pybullet as bullet
-
         def apply(time: float) -> None:
-            place = self.path[min(int(time / self.period + 1e-6), len(self.path) - 1)]
-            bullet.resetBasePositionAndOrientation(
-                self.body.body, place, (0, 0, 0, 1), physicsClientId=self.body.client
-            )
+            self.body.place(self.path[min(int(time / self.period + 1e-6), len(self.path) - 1)])
 
         return apply
 

@@ -13,16 +13,17 @@ CLAIMS = (
     Claim(
         "C1.22",
         "1.17",
-        "With the help of the regulation of AFR's motion rigid boxes of three sizes are carried and dropped into a bin.",
+        "Helped by the regulation of AFR's motion, rigid boxes of three sizes are carried and dropped into a bin.",
         _carried("small", "medium", "large"),
         control=_carried("fixed_small", "fixed", "fixed_large"),
         credits="the proposed motion regulation (1.4)",
         printed=greater("rigid_boxes.printed.successes", 0.5),
         where="1.5.2.2",
         note="Three start poses a size, friction contact in three dimensions; with a gain of 0.01, our choice. The "
-        "control presses as deep as gives the desired force on this contact, without feedback: it carries the boxes too "
-        "({rigid_boxes.fixed_small.successes}, {rigid_boxes.fixed.successes} and {rigid_boxes.fixed_large.successes} of "
-        "{rigid_boxes.fixed.runs}), with a force that errs by {rigid_boxes.fixed.rmse:.0f} N.",
+        "control presses as deep as gives the desired force on this contact, without feedback: it carries the boxes "
+        "too ({rigid_boxes.fixed_small.successes}, {rigid_boxes.fixed.successes} and "
+        "{rigid_boxes.fixed_large.successes} of {rigid_boxes.fixed.runs}), with a force that errs by "
+        "{rigid_boxes.fixed.rmse:.0f} N.",
     ),
     Claim(
         "C1.28",

@@ -74,10 +74,12 @@ def measure(recording: Recording, config: Config) -> Metrics:
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """By how much a law's force error exceeds the proposed law's, on the line and on the circle [N]."""
     result: Metrics = {}
-    for case in ("force", "passive", "tuned_force", "tuned_passive", "no_impedance"):
-        own = "tuned_proposed" if case.startswith("tuned") else "proposed"
-        for phase in ("line", "circle"):
-            pair = [metrics.get(name, {}).get(f"rmse_{phase}") for name in (case, own)]
-            if pair[0] is not None and pair[1] is not None:
-                result[f"{'lead' if case == 'no_impedance' else case}_excess_{phase}"] = pair[0] - pair[1]
+    rivals = {"force": "force", "passive": "passive", "lead": "no_impedance"}
+    tuned = {name: name for name in ("tuned_force", "tuned_passive")}
+    for own, others in (("proposed", rivals), ("tuned_proposed", tuned)):
+        for name, case in others.items():
+            for phase in ("line", "circle"):
+                pair = [metrics.get(one, {}).get(f"rmse_{phase}") for one in (case, own)]
+                if pair[0] is not None and pair[1] is not None:
+                    result[f"{name}_excess_{phase}"] = pair[0] - pair[1]
     return result

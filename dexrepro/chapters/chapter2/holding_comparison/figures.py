@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from dexrepro.chapters.chapter2.measures import shown
+from dexrepro.chapters.chapter2.measures import gains, shown
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "2.8": Figure(
@@ -45,7 +46,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
                 "trajectory": parameters.leader.trajectory,
                 "regulation (2.8)": "yes" if parameters.follower.regulation else "no",
                 "f_d [N]": parameters.desired_force,
-                "gains": GAINS.get(case.partition("_")[0], "printed"),
+                "gains": gains(parameters, config),
                 "realisation": parameters.realisation,
                 **{f"RMSE [{start}, 40] s [N]": found[f"rmse_{start}"] for start in (0, 5, 10)},
                 "RMSE [20, 40] s [N]": found["rmse"],
@@ -56,9 +57,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
             }
         )
     return {"T2.1": pd.DataFrame(rows)}
-
-
-GAINS = {"tuned": "tuned", "printed": "printed; time from the start", "total": "printed; time from the start"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
@@ -81,8 +79,6 @@ def _alike(one: Config, other: Config) -> bool:
 
 
 def _draw_histories(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(4, 2, height=6.9, width_ratios=(3, 1))
     groups = {"a": range(1, 3), "a ": range(3, 9), "b": range(9, 15), "c": range(15, 19)}
     limits = {"a": (-0.2, 6), "a ": (0.6, 1.6), "b": (0.6, 1.6), "c": (2, 10)}
@@ -119,8 +115,6 @@ def _draw_histories(recordings: Recordings, metrics: AllMetrics, config: Config)
 
 
 def _draw_settings(metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     settings = {
         "joint PD": ("s6", "s8"),
         "joint PD,\nno (2.8)": ("s5", "s7"),
@@ -129,7 +123,7 @@ def _draw_settings(metrics: AllMetrics, config: Config) -> Drawing:
         "total\nderivative": ("printed_6", "total_8"),
     }
     settings = {name: pair for name, pair in settings.items() if set(pair) <= set(metrics)}
-    tuned = [case for case, parameters in config.cases.items() if case.startswith("tuned_") or parameters.law]
+    tuned = [case for case, its in config.cases.items() if its.law or gains(its, config) == "tuned"]
     figure, (left, right) = style.subplots(1, 2, height=2.6, width_ratios=(3, 2))
     place = np.arange(len(settings))
     for shift, index, key in ((-0.2, 0, "no_impedance"), (0.2, 1, "impedance")):

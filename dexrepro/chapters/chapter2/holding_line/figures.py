@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "2.5": Figure(
@@ -18,19 +19,17 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     cases = [case for case in ("case1", "case2") if {f"{case}_with", f"{case}_without"} <= set(recordings)]
     if not cases:
         return {}
-    from dexrepro.report import style
-
     figure, grid = style.subplots(2, len(cases), height=3.4, sharex=True, sharey="row", squeeze=False)
     lines = {"with": ("with (2.8)", "book"), "without": ("without", "plain")}
-    for column, case, letter in zip(grid.T, cases, "ab"):
+    texts = ("start {:.0f} mm apart (Case 1)", "partner swings across (Case 2)")
+    for column, case, letter, text in zip(grid.T, cases, "ab", texts):
         for switch, (label, line) in lines.items():
             run = recordings[f"{case}_{switch}"]
             offset = run["follower.tip"][:, 1] - run["leader.tip"][:, 1]
             column[0].plot(run.time, run["object.force"], label=label, **style.LINES[line])
             column[1].plot(run.time, 1e3 * offset, **style.LINES[line])
         column[0].axhline(config.desired_force, label="$f_d$", **style.LINES["reference"])
-        start = f"start {1e3 * abs(offset[0]):.0f} mm apart (Case 1)"
-        style.panel(column[0], letter, start if case == "case1" else "partner swings across (Case 2)")
+        style.panel(column[0], letter, text.format(1e3 * abs(offset[0])))
         column[1].set_xlabel("Time [s]")
     grid[0, 0].set(ylabel="Holding force $\\|F\\|$ [N]", ylim=(-0.1, 2.6))
     grid[1, 0].set_ylabel("Offset $y_1 - y_2$ [mm]")

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "2.6": Figure(
@@ -34,8 +35,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_forces(cases: list[str], recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(width=style.TWO_COLUMNS, height=2.2)
     inset = axes.inset_axes((0.3, 0.3, 0.45, 0.55))
     lines = [style.LINES[name] for name in ("book", "extra1", "rival", "extra2", "plain")]
@@ -54,8 +53,6 @@ def _draw_forces(cases: list[str], recordings: Recordings, metrics: Any, config:
 
 
 def _draw_estimates(cases: list[str], recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(3, len(cases), height=4.6, sharex=True, sharey="row", squeeze=False)
     for column, case in zip(grid.T, cases):
         recording, parameters = recordings[case], config.cases[case]

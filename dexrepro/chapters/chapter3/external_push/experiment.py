@@ -61,7 +61,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     jacobian = point_jacobian(gripper_arm(config.gripper), recording[f"{ARM}.position"], 4, place)[:, :3]
     force = np.stack([recording[f"push.{axis}"] for axis in "xyz"], axis=1)
     recording.series["external"] = np.einsum("ki,kij->kj", force, jacobian)
-    if config.case == "exact_plus":
+    if config.sweep.run:
         recording.frames["sweep"] = _sweep(recording, config, rng("momentum"))
     return recording
 

@@ -105,11 +105,12 @@ CLAIMS = (
         },
         searched="task (tool axis held, six dimensions)",
         where="3.3.2",
-        note="Where the tool axis is left free, which is not the book's task, the torque is large and the largest error "
-        "grows from {fixed_opening.exactposfree1.tracking_error_max:.1g} to "
-        "{fixed_opening.exactpos1.tracking_error_max:.1g} m (reach 1, exact model). The null-space torque is dynamically consistent, (3.27) is not: "
-        "e_2 holds the speed of all joints, so the law brakes the null-space motion with a torque that the task feels "
-        "(C3.04c). No torque is clipped here, and without the network the coupling is larger.",
+        note="Where the tool axis is left free, which is not the book's task, the torque is large and the largest "
+        "error grows from {fixed_opening.exactposfree1.tracking_error_max:.1g} to "
+        "{fixed_opening.exactpos1.tracking_error_max:.1g} m (reach 1, exact model). The null-space torque is "
+        "dynamically consistent, (3.27) is not: e_2 holds the speed of all joints, so the law brakes the null-space "
+        "motion with a torque that the task feels (C3.04c). No torque is clipped here, and without the network the "
+        "coupling is larger.",
     ),
     Claim(
         "C3.04c",

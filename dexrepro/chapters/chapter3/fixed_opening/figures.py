@@ -11,6 +11,7 @@ from dexrepro.chapters.chapter3 import drawings
 from dexrepro.chapters.chapter3.measures import COLUMNS, headed
 from dexrepro.chapters.chapter3.scene import FILMED
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
+from dexrepro.report import style
 
 from .experiment import REACHES
 
@@ -85,8 +86,6 @@ CURVES = {
 
 
 def _draw_reach(n: int, recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.6)
     for prefix, (label, line) in CURVES.items():
         recording = recordings.get(f"{prefix}{n}")

@@ -10,6 +10,7 @@ from dexrepro.chapters.chapter3 import drawings
 from dexrepro.chapters.chapter3.measures import headed
 from dexrepro.chapters.chapter3.scene import FILMED
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Metrics, Recording, Recordings
+from dexrepro.report import style
 
 _SHOWN = "The simulated arm and the moving lid {} after its movement began. The book shows photographs."
 FIGURES = {
@@ -51,8 +52,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_path(run: Recording, found: Metrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.4)
     x, y, z = run["centre"].T
     left.plot(x, y, **style.LINES["reference"])
@@ -78,8 +77,6 @@ CURVES = {
 
 
 def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.7)
     for case, (label, line) in CURVES.items():
         if case in recordings:

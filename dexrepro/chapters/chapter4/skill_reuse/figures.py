@@ -91,7 +91,8 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     rows = []
     for case, found in metrics.items():
         if case in config.cases:
-            gain = "common" if case.startswith("common") or case == "broad20" else "equal effective"
+            network = config.cases[case].law.network
+            gain = "none" if not network else "common" if network.gain == config.law.network.gain else "equal effective"
             rows.append({"case": case, "gain": gain, **{label: found.get(name) for name, label in COLUMNS.items()}})
     return {"T4.A": pd.DataFrame(rows)}
 
@@ -281,9 +282,7 @@ def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
 
 
 def _count_axes() -> Any:
-    import matplotlib.pyplot as plt
-
-    figure = plt.figure(figsize=(style.TWO_COLUMNS, 3.8))
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 3.8))
     grid = figure.add_gridspec(2, 5)
     top = figure.add_subplot(grid[0, :])
     first = figure.add_subplot(grid[1, 0])

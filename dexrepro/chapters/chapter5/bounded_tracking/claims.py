@@ -45,8 +45,11 @@ CLAIMS = (
         "known exactly or not",
         where="5.4.2",
         note="The sign of the network's term and u of (5.44), which is not defined: with the sign corrected the errors "
-        "stay inside for u of 0 to 0.3, not for 1; with the printed sign they leave for u = 0 as well (T5.G), unless "
-        "the weights are forgotten at once and model, friction and contact are known exactly.",
+        "use {bounded_tracking.sign_only.bound_use:.0%} of the limits for u = 0, "
+        "{bounded_tracking.sign_robust.bound_use:.0%} for u = 1; with the printed sign and u = 0 "
+        "{bounded_tracking.printed_no_robust.bound_use:.0%} (T5.G), and "
+        "{bounded_tracking.printed_forgetting.bound_use:.0%} where the weights are forgotten at once and M, "
+        "C and G are known exactly, as (5.32) writes them, friction and contact, too.",
     ),
     Claim(
         "C5.27",

@@ -8,6 +8,7 @@ import numpy as np
 
 from dexrepro.chapters.chapter5 import pen
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
 from dexrepro.robots.pen_arm import pen_arm_tip
 
@@ -64,8 +65,6 @@ SHOWN = {
 
 
 def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(1, len(cases), height=2.0, sharex=True, sharey=True, squeeze=False)
     for panel, case in zip(axes[0], cases):
         drawn = pen.from_paper(recordings[case]["arm.tip"])
@@ -84,8 +83,6 @@ def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics)
 
 
 def _draw_picture(recording: Recording) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.plt.subplots(figsize=(style.ONE_COLUMN, 2.4))
     axes.imshow(style.trimmed({"a": recording.images["picture"]})["a"])
     axes.set_axis_off()
@@ -94,8 +91,6 @@ def _draw_picture(recording: Recording) -> Drawing:
 
 
 def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(3, 4, height=4.8, sharex=True)
     bound = config.bound
     for column, (case, (name, line)) in zip(grid.T, SHOWN.items()):

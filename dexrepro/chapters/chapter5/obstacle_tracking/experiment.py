@@ -9,7 +9,7 @@ import numpy as np
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import crossing, pen
 from dexrepro.control.contract import build
-from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording, changed
 from dexrepro.humans.crossing import clearance, obstacle_boxes
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
@@ -82,9 +82,18 @@ def measure(recording: Recording, config: Config) -> Metrics:
     }
 
 
+def crossings(config: Config) -> dict[tuple[int, int], str]:
+    """The cases that differ in nothing but the stack and the goal, by these."""
+    return {
+        (case.blocks, case.goal): name
+        for name, case in config.cases.items()
+        if changed(case, config) <= {"blocks", "goal"}
+    }
+
+
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """The worst of the 18 crossings."""
-    runs = [values for case, values in metrics.items() if case.startswith(("two_", "three_"))]
+    runs = [metrics[case] for case in crossings(config).values() if case in metrics]
     if not runs:
         return {}
     return {

@@ -10,6 +10,9 @@ import pandas as pd
 from dexrepro.chapters.chapter5 import crossing, pen
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report import style
+
+from .experiment import crossings
 
 FIGURES = {
     "5.7": Figure(
@@ -37,8 +40,6 @@ FILM = Film(
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     figures = {}
     if {"film2", "film3"} <= set(recordings):
         figure, axes = style.plt.subplots(1, 1, figsize=(style.ONE_COLUMN, 2.5))
@@ -47,45 +48,43 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         style.title(figure, "The arm, three cubes with their lip, and nine goals")
         figures["5.7"] = figure
         figures["5.9"] = _filmstrip(recordings, config)
-    if sum(case.startswith(("two_", "three_")) for case in recordings) == 18:
+    if set(crossings(config).values()) <= set(recordings):
         figures["5.F"] = _draw_runs(recordings, metrics, config)
     return figures
 
 
 def _filmstrip(recordings: Recordings, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(2, len(config.film), height=3.2)
     film = [(case, k) for case in ("film2", "film3") for k in range(len(config.film))]
     pictures = style.trimmed({(case, k): recordings[case].images[f"at{k}"] for case, k in film})
-    for row, case in zip(grid, ("film2", "film3")):
+    for row, case in zip(grid, dict.fromkeys(case for case, _ in film)):
         for k, (axes, time) in enumerate(zip(row, config.film)):
             axes.imshow(pictures[case, k])
             axes.set_axis_off()
-            axes.set_title(f"{case[-1]} blocks, {time:g} s")
+            axes.set_title(f"{config.cases[case].blocks} blocks, {time:g} s")
     style.title(figure, "The arm carries its pen over two and three blocks")
     return figure
 
 
 def _draw_runs(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.3, width=style.TWO_COLUMNS)
     places = crossing.goals(config)
-    for prefix, colour, marker, shift in (("two_", style.EXTRA[0], "o", -0.15), ("three_", style.BOOK, "s", 0.15)):
-        for k in range(len(places)):
-            recording = recordings[f"{prefix}{k}"]
-            usage = pen.bound_use(recording, config)
-            left.plot(recording.time, usage, color=colour, linewidth=0.5)
-        values = [metrics[f"{prefix}{k}"]["clearance"] for k in range(len(places))]
-        right.plot(np.arange(9) + shift, values, marker, ms=4, color=colour, label=f"{prefix[:-1]} blocks")
+    cases = crossings(config)
+    lines = ((2, "two", style.EXTRA[0], "o", -0.15), (3, "three", style.BOOK, "s", 0.15))
+    for blocks, word, colour, marker, shift in lines:
+        stack = [cases[blocks, goal] for goal in range(len(places))]
+        for case in stack:
+            usage = pen.bound_use(recordings[case], config)
+            left.plot(recordings[case].time, usage, color=colour, linewidth=0.5)
+        values = [metrics[case]["clearance"] for case in stack]
+        right.plot(np.arange(9) + shift, values, marker, ms=4, color=colour, label=f"{word} blocks")
     left.axhline(1, **style.LINES["reference"])
     left.set(yscale="log", ylim=(1e-4, 2), xlabel="Time [s]", ylabel="Largest share\nof the bound [-]")
     right.axhline(0, **style.LINES["reference"])
     right.set_xticks(range(9), [f"{x:g}\n{y:g}" for x, y, _ in places])
     right.set(xlabel="Goal x, y [cm]", ylabel="Clearance of the tip [cm]", ylim=(-0.1, 1.6))
     right.legend()
-    runs = [values for case, values in metrics.items() if case.startswith(("two_", "three_"))]
+    runs = [metrics[case] for case in cases.values()]
     good = sum((values["bound_use"] or 2.0) < 1 and (values["clearance"] or -1.0) > 0 for values in runs)
     style.title(figure, f"{good} of {len(runs)} crossings stay inside the bound and clear of the obstacle")
     return figure
@@ -95,12 +94,8 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     names = {"clearance": "clearance [cm]", "bound_use": "largest share of the bound", "tip_rms": "tip error RMS [mm]",
              "end_error": "distance from the goal [mm]"}  # fmt: skip
     rows = [
-        {
-            "blocks": 2 if case.startswith("two") else 3,
-            "goal": case.split("_")[1],
-            **{text: values[name] for name, text in names.items()},
-        }
-        for case, values in metrics.items()
-        if case.startswith(("two_", "three_"))
+        {"blocks": blocks, "goal": goal, **{text: metrics[case][name] for name, text in names.items()}}
+        for (blocks, goal), case in crossings(config).items()
+        if case in metrics
     ]
     return {"T5.J": pd.DataFrame(rows)}

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 from .experiment import constraint_of
 
@@ -39,8 +40,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     figure, ((inner, outer), (right, close)) = style.subplots(2, 2, height=4.2)
     lines = ("extra1", "book", "rival", "extra2", "printed")
     fallen = []
@@ -55,7 +54,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
             right.plot(time, error / np.array(edges), **style.LINES[name])
             if not bound.inside:
                 fallen.append(100 * (1 - value[-1]))
-        if case.startswith("asymmetric_outside"):
+        if not bound.inside and bound.lower is not None:
             close.plot(time, error / np.array(edges), label=label, **style.LINES[name])
     for axes in (right, close):
         axes.axhline(1, **style.LINES["reference"])

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "6.C": Figure(
@@ -47,15 +48,13 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         "still_filter": "rival",
     }
     moving = {
-        "moving_detour_feedforward": "book",
-        "moving_detour_printed": "printed",
-        "moving_filter": "rival",
-        "moving_outside": "extra2",
+        "moving_detour_feedforward": ("detour, feedforward", "book"),
+        "moving_detour_printed": ("detour, printed", "printed"),
+        "moving_filter": ("filter", "rival"),
+        "moving_outside": ("outside", "extra2"),
     }
     if not set(still) | set(moving) <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.8)
     shown = config.cases["still_printed"]
     angle = np.linspace(0, 2 * np.pi, 100)
@@ -64,7 +63,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     for case, line in still.items():
         path = recordings[case]["position"][:, 2:4]
         path = path[np.isfinite(path).all(axis=1)]
-        left.plot(*path.T, label=case.replace("still_", ""), **style.LINES[line])
+        left.plot(*path.T, label=config.cases[case].cdmp.law, **style.LINES[line])
         whole = len(path) == len(recordings[case].time)
         left.plot(*path[-1], "o" if whole else "x", color=style.LINES[line]["color"], markersize=3.5 if whole else 6)
     moved = recordings["still_consistent"]["position"]
@@ -75,11 +74,9 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     )  # fmt: skip
     left.set(aspect="equal", xlabel="x [cm]", ylabel="y [cm]", xlim=(-0.5, 10.5), ylim=(-2, 3))
     left.legend(loc="upper left", ncols=2, fontsize=6.5)
-    for case, line in moving.items():
+    for case, (label, line) in moving.items():
         run = recordings[case]
-        right.plot(
-            run.time, run["distance"][:, 0], label=case.replace("moving_", "").replace("_", ", "), **style.LINES[line]
-        )
+        right.plot(run.time, run["distance"][:, 0], label=label, **style.LINES[line])
     right.axhline(shown.radius, **style.LINES["reference"])
     right.annotate(
         "edge of the disk", (0.1, shown.radius), xytext=(0, -2), textcoords="offset points", fontsize=7, va="top"

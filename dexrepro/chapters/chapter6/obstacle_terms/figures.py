@@ -7,6 +7,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter6 import plane
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "6.D": Figure(
@@ -59,8 +60,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     }
     if not set(lines) <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     figure, ((a, b), (c, d)) = style.subplots(2, 2, height=4.6)
     plane.draw_map(a, config.cases["constrained"], reference=False)
     for case, line in lines.items():
@@ -69,9 +68,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     phi = np.linspace(0, np.pi / 2, 300)
     b.plot(np.degrees(phi), config.strength * phi * np.exp(-config.decay * phi), **style.LINES["plain"])
     b.set(xlabel="Angle between heading and obstacle [deg]", ylabel="$\\|p\\|/\\|v\\|$ [1/s]")
-    for case in ("centroid", "potential"):
+    for case, name in (("centroid", "steering"), ("potential", "potential")):
         frame = recordings[case].frames["points"]
-        name = "steering" if case == "centroid" else "potential"
         c.plot(np.maximum(frame.offset, 1e-8), frame.distance, marker=".", label=name, **style.LINES[lines[case]])
     c.set(xscale="log", xlabel="Offset of the point [cm] (left: 0)", ylabel="Smallest distance [cm]", ylim=(0, None))
     c.legend()

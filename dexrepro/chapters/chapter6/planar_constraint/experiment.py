@@ -89,7 +89,7 @@ def _row(
     off = np.flatnonzero(defined & (distance > config.settled))
     peak = float(time[np.nanargmax(distance)])
     whole = bool(defined.all())
-    extended = plane.extended_paths(config, lesson, 500)[1]
+    extended = plane.extended_paths(config, lesson, 500)[1].position
     return {
         "e_max": float(np.nanmax(distance)),
         "violated_from": float(time[beyond.argmax()]) if beyond.any() else np.nan,

@@ -74,4 +74,23 @@ CLAIMS = (
         "constraint, extended primitives clear everything by "
         "{planar_skill.local_intervals.clearance_extended_2_min:.2f} cm.",
     ),
+    Claim(
+        "C6.31",
+        "6.2c",
+        "Which of the two ways to a reference is better depends on the task: interpolation keeps clear of obstacles, "
+        "an extended primitive follows a goal that moves.",
+        every(
+            greater(f"{SKILL}.book.clearance_reference_min", f"{SKILL}.book.clearance_extended_2_max"),
+            less(f"{SKILL}.book.moved_goal_extended_max", f"{SKILL}.book.moved_goal_reference_min", 0.1),
+        ),
+        control=less(f"{SKILL}.book.acceleration_extended_max", f"{SKILL}.book.acceleration_reference_min"),
+        where="6.4.1",
+        by_construction="the goal of a primitive is a parameter, fixed points know none",
+        note="The book names no measure. The goal moves by {planar_skill.book.moved_goal_reference_max:.1f} cm after "
+        "the reference was made; the extended primitive ends {planar_skill.book.moved_goal_extended_max:.3f} cm off "
+        "it. By the largest acceleration, the control, extended primitives gain nothing: between whole sub-skills they "
+        "need {planar_skill.book.acceleration_extended_max:.0f} cm/s^2, cut at the constraint "
+        "{planar_skill.local_intervals.acceleration_extended_max:.0f}, the spline "
+        "{planar_skill.book.acceleration_reference_max:.0f}.",
+    ),
 )

@@ -38,7 +38,10 @@ def _study(config: Config, lesson: plane.Lesson) -> tuple[dict[str, float], dict
         for skill, duration in zip((lesson.first, lesson.second), lesson.durations)
     )
     reference, samples, (leave, resume) = plane.spline_reference(config, second)
-    extended = plane.extended_paths(config, lesson, steps)
+    movements = plane.extended_paths(config, lesson, steps)
+    extended = [movement.position for movement in movements]
+    goal = lesson.second.goal + config.moved
+    moved = lesson.second.rollout(lesson.durations[1] / steps, horizon=lesson.durations[1], goal=goal)
     inside = np.concatenate([lies_inside(path, [*old, block]) for path in extended])
     inside_old = np.concatenate([lies_inside(path, old) for path in extended])
     found = [pauses(drawing.time, drawing.position) for drawing in lesson.drawings]
@@ -53,6 +56,10 @@ def _study(config: Config, lesson: plane.Lesson) -> tuple[dict[str, float], dict
         "clearance_old": min(clearance(first.position, old), clearance(second.position, old)),
         "clearance_first_new": clearance(first.position, [block]),
         "clearance_reference": clearance(reference.position, [*old, block]),
+        "acceleration_reference": _largest(reference.acceleration),
+        "acceleration_extended": max(_largest(movement.acceleration) for movement in movements),
+        "moved_goal_reference": float(np.linalg.norm(reference.position[-1] - goal)),
+        "moved_goal_extended": float(np.linalg.norm(moved.position[-1] - goal)),
         "kept_share": 1 - (resume - leave) / len(second.position),
         "clearance_extended_1": clearance(extended[0], [*old, block]),
         "clearance_extended_2": clearance(extended[1], [*old, block]),
@@ -81,6 +88,10 @@ def _second_alone(drawing: Drawing) -> list[float]:
     """Pauses found in the second stroke alone, which has none."""
     later = drawing.time > drawing.pauses[0] + 0.3
     return pauses(drawing.time[later], drawing.position[later])
+
+
+def _largest(acceleration: Any) -> float:
+    return float(np.linalg.norm(acceleration, axis=1).max())
 
 
 def lies_inside(path: Any, polygons: list[Polygon]) -> Any:

@@ -8,6 +8,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter6 import plane
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
 from .experiment import lies_inside
@@ -20,16 +21,16 @@ FIGURES = {
     ),
     "6.2a": Figure(
         "The two sub-skills learned from five demonstrations that were cut at a change point. The book shows the same.",
-        "The learned path passes the old obstacles but cuts through the additional block.",
+        "The learned path among the obstacles, its two sub-skills and the cut between them.",
     ),
     "6.2b": Figure(
         "Reference path by cubic splines (thin) between the kept parts of the learned path and the arc.",
-        "The spline reference clears all obstacles and keeps most of the learned path.",
+        "The spline reference among the obstacles, with the kept parts of the learned path.",
     ),
     "6.2c": Figure(
         "Reference path by extended primitives: sub-skill 1 with its goal moved to the arc's start, sub-skill 2 with "
         "its start moved to the arc's end; crosses mark samples inside an obstacle. The book reports such collisions.",
-        "Extending whole sub-skills leads the path through the old obstacles.",
+        "Extended sub-skills among the obstacles; crosses where they lie inside one.",
     ),
 }
 TABLES = {"T6.Sa": "Variants of the map, of the segmentation and of the intervals, and what they change"}
@@ -51,8 +52,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "book" not in recordings:
         return {}
-    from dexrepro.report import style
-
     lines = {name: frame.to_numpy() for name, frame in recordings["book"].frames.items() if name != "groups"}
     numbers, settings = metrics["book"], config.cases["book"]
     figures = {}

@@ -75,7 +75,7 @@ CLAIMS = (
         note="As C6.20, without our projection; with it the distance errs by up to "
         "{skeleton_constraints.feedforward.hands_error_constrained:.3f} cm, by geometry alone by "
         "{skeleton_constraints.geometry.hands_error_constrained:.3f} cm. Both hands are held about their common "
-        "centre, each within half the printed margin; with 1 cm each the distance leaves the band. Held about the "
+        "centre, each within half the printed margin; with 1 cm each the distance may leave the band. Held about the "
         "other hand, 1 cm would do (E6.13).",
     ),
     Claim(

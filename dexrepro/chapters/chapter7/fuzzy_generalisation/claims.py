@@ -63,8 +63,8 @@ CLAIMS = (
         note="Smallest clearance {fuzzy_generalisation.main.clearance_three:.2f} cm with the obstacle on the path, "
         "our choice, and the sets rescaled, as 7.3.2 says; {fuzzy_generalisation.same_sets.clearance_three:.2f} cm "
         "with the sets kept. Where the printed coordinates, read in cm, put it the ordinary path clears it already "
-        "(by {fuzzy_generalisation.as_read.ordinary_clearance:.2f} cm) and left turns into it. A person who lifts 1 "
-        "cm less would make right touch it (T7.S).",
+        "(by {fuzzy_generalisation.as_read.ordinary_clearance:.2f} cm) and left turns into it. With a person who "
+        "lifts 1 cm less the clearance is {fuzzy_generalisation.lower_lift.clearance_three:.2f} cm (T7.S).",
     ),
     Claim(
         "C7.20",
@@ -73,7 +73,8 @@ CLAIMS = (
         every(passes("main"), greater(f"{FUZZY}.main.clearance_three", f"{FUZZY}.same_sets.clearance_three")),
         control=passes("same_sets"),
         where="7.3.2",
-        note="7.4.2 itself keeps the sets, because the board is the same; here this makes right touch the obstacle.",
+        note="7.4.2 itself keeps the sets, because the board is the same; here this lowers the clearance from "
+        "{fuzzy_generalisation.main.clearance_three:.2f} to {fuzzy_generalisation.same_sets.clearance_three:.2f} cm.",
     ),
     Claim(
         "C7.21",
@@ -84,7 +85,7 @@ CLAIMS = (
         printed=usable("printed_sign", "printed_kinematics"),
         readings={"the fuzzy sets kept, as 7.4.2 says": usable("same_sets"), AS_READ: usable("as_read")},
         where="7.4.2",
-        note="Fragile: other widths of the direction sets make it touch the obstacle (T7.S).",
+        note="Other widths of the direction sets may make it touch the obstacle (T7.S).",
     ),
     Claim(
         "C7.21b",
@@ -92,7 +93,9 @@ CLAIMS = (
         "Every direction in between is usable.",
         greater(f"{FUZZY}.main.clearance_between", 0),
         source="ours",
-        note="Averaging around and over gives neither; wider humps or sets avoid it (T7.S).",
+        note="{fuzzy_generalisation.main.clearance_between:.2f} cm at worst: averaging around and over gives neither. "
+        "Wider humps or sets leave {fuzzy_generalisation.wide_reaction.clearance_between:.2f} and "
+        "{fuzzy_generalisation.wide_sets.clearance_between:.2f} cm.",
     ),
     Claim(
         "C7.22",

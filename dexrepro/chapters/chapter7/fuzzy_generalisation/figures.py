@@ -5,19 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "7.9": Figure(
-        "Generalisation to start (4.6, 0), goal (18, 4) cm and a 4 cm obstacle (simulated). (a) Ordinary skill, old "
-        "and new task; obstacle on the path (full) and where the printed coordinates read in cm put it (dashed); red "
-        "dotted: T X' = V' as printed in (7.33). (b) Three directions, from above and from the side; faint: a 2 cm "
-        "and an 8 cm obstacle. (c) Directions in between, grey, and the left-forward one, with the clearance against "
-        "the direction. (d) Stiffness between those of the demonstrated heights.",
-        "The three directions pass the new obstacle; half way between left and forward the tool touches it.",
+        "Generalisation to the printed start (4.6, 0), goal (18, 4) cm and height of 4 cm (simulated). (a) Ordinary "
+        "skill, old and new task; obstacle on the path (full) and where the printed coordinates read in cm put it "
+        "(dashed); red dotted: T X' = V' as printed in (7.33). (b) Three directions, from above and from the side; "
+        "shaded: what they do before obstacles of 2 to 8 cm. (c) Directions in between, grey, and the left-forward "
+        "one, with the clearance against the direction. (d) Stiffness between those of the demonstrated heights.",
+        "Paths to a new goal past a new obstacle in three directions, and by how much the directions between clear it.",
     ),
 }
 TABLES = {"T7.9": "Clearance of the generalised reactions in the new task", "T7.S": "Choices that turn a verdict"}
@@ -27,7 +29,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if "main" not in recordings:
         return {}
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     recording, case = recordings["main"], config.cases.main
     task, old = skills.Reach(case.task.start, case.task.goal), skills.reach(case)
@@ -35,19 +36,22 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     figure, plans, sides = pictures.plans_over_sides(2, height=6.4)
     level = pictures.joined(figure, plans, sides, 1, 1)
     draw_ordinary(plans[0, 0], sides[0, 0], recordings, case, obstacle)
-    for height in (case.scene.low, case.scene.tall):
-        for name, path in zip(pictures.DIRECTIONS, skills.by_path(recording[f"height{height:g}"])):
-            line = pictures.DIRECTIONS[name] | {"alpha": 0.3, "linewidth": 0.7}
-            pictures.plan(plans[0, 1], path, **line)
-            pictures.side(sides[0, 1], path, task, **line)
+    bounds = (skills.by_path(recording[f"height{height:g}"]) for height in (case.scene.low, case.scene.tall))
+    for line, low, tall in zip(pictures.DIRECTIONS.values(), *bounds):
+        band = {"color": line["color"], "alpha": 0.18, "linewidth": 0}
+        plans[0, 1].fill(*np.concatenate([low, tall[::-1]])[:, :2].T, **band)
+        outline = np.concatenate([low, tall[::-1]])
+        sides[0, 1].fill((outline - task.ends[0]) @ task.axes[0], outline[:, 2], **band)
     for name, path in zip(pictures.DIRECTIONS, skills.by_path(recording[f"height{case.task.height:g}"])):
         pictures.plan(plans[0, 1], path, **pictures.DIRECTIONS[name])
         pictures.side(sides[0, 1], path, task, **pictures.DIRECTIONS[name])
     sides[0, 1].set_ylim(0, 13)
     sides[0, 1].annotate(
-        f"faint: {case.scene.low:g} and {case.scene.tall:g} cm high", (0.98, 0.95), xycoords="axes fraction",
-        fontsize=7, ha="right", va="top",
+        f"shaded: obstacles of {case.scene.low:g} to {case.scene.tall:g} cm", (0.98, 1), xycoords="axes fraction",
+        fontsize=8, ha="right", va="top",
     )  # fmt: skip
+    for panel, top in ((plans[0, 0], 10.5), (plans[0, 1], 10.5), (plans[1, 0], 7.5)):
+        panel.set_ylim(-1.5, top)
     pictures.name_directions(plans[0, 1])
     pictures.plan(plans[1, 0], skills.by_path(recording["between"]), color="#AAAAAA", linewidth=0.6)
     pictures.plan(plans[1, 0], recording["chosen"], **style.LINES["book"])
@@ -57,19 +61,24 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     pictures.profile(sides[0, 1], obstacle, task)
     draw_clearance(sides[1, 0], recording, case, obstacle)
     worst: Mapping[str, Any] = metrics["main"]
-    style.panel(plans[0, 0], "a", f"ordinary skill, {10 * worst['end_error']:.1f} mm from the new goal")
-    style.panel(plans[0, 1], "b", f"three directions, {worst['clearance_three']:.1f} cm clear")
-    style.panel(plans[1, 0], "c", f"left-forward ({case.direction:g}), {worst['clearance_chosen']:.1f} cm clear")
+    style.panel(plans[0, 0], "a", f"ordinary skill, {style.at_most(10 * worst['end_error'], 1)} mm from the new goal")
+    style.panel(plans[0, 1], "b", f"three directions, {style.at_least(worst['clearance_three'], 1)} cm clear")
+    style.panel(
+        plans[1, 0], "c", f"left-forward ({case.direction:g}), {style.at_least(worst['clearance_chosen'], 2)} cm clear"
+    )
     draw_stiffness(level, recording)
     style.panel(level, "d", "stiffness for the 4 cm obstacle")
-    style.title(figure, "Reactions carry over to a new task, except half way between around and over (simulated)")
+    style.title(
+        figure,
+        f"Three directions clear the new obstacle by {style.at_least(worst['clearance_three'], 1)} cm; in between "
+        f"the clearance falls to {10 * worst['clearance_between']:.1f} mm ($t_3$ = {worst['worst_direction']:.2g})",
+    )
     pictures.ends(plans[0, 0], old)
     return {"7.9": figure}
 
 
 def draw_ordinary(plan: Any, side: Any, recordings: Recordings, case: Config, obstacle: Any) -> None:
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     task, old = skills.Reach(case.task.start, case.task.goal), skills.reach(case)
     curves = {"old task": ("main", "old", old, "plain"), "new task": ("main", "new", task, "book"),
@@ -87,8 +96,6 @@ def draw_ordinary(plan: Any, side: Any, recordings: Recordings, case: Config, ob
 
 
 def draw_clearance(panel: Any, recording: Recording, case: Config, obstacle: Any) -> None:
-    from dexrepro.report import style
-
     clearance = obstacle.clearance(skills.by_path(recording["between"]), case.scene.tool_radius)
     panel.plot(case.between, clearance, marker=".", color="#888888")
     chosen = obstacle.clearance(recording["chosen"], case.scene.tool_radius)
@@ -101,8 +108,6 @@ def draw_clearance(panel: Any, recording: Recording, case: Config, obstacle: Any
 
 
 def draw_stiffness(panel: Any, recording: Recording) -> None:
-    from dexrepro.report import style
-
     style.band(panel, recording.time, recording["stiffness_low"], recording["stiffness_tall"])
     panel.annotate("2 cm", (4.9, recording["stiffness_low"][-1]), fontsize=6.5, va="top", ha="right")
     panel.annotate("8 cm", (4.9, recording["stiffness_tall"][-1]), fontsize=6.5, va="bottom", ha="right")

@@ -7,12 +7,13 @@ import numpy as np
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import desk
 from dexrepro.control.time_delay_impedance import sampled_spectral_radius
-from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording, changed
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.robots.pen_arm import gripper, pen_arm
 
 RATE = 1000.0
 CHATTER = 1.0  # N m of torque travel a joint; smooth runs have 0.15
+FLOOR = 1e-4  # V / V(0) down to which V is judged: below is the noise of the estimate
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
@@ -58,7 +59,7 @@ def lyapunov_metrics(recording: Recording, config: Config) -> Metrics:
     pairs = zip(recording["arm.position"][early], recording["filtered_error"][early])
     value = np.array([r @ model.mass_matrix(q) @ r for q, r in pairs])
     recording.series = {"time": recording.time[early], "lyapunov": value}
-    low = np.flatnonzero(value < 1e-4 * value[0])
+    low = np.flatnonzero(value < FLOOR * value[0])
     falling = value[: low[0] + 1] if len(low) else value
     return {
         "lyapunov_rise": float((falling[1:] / falling[:-1]).max() - 1),
@@ -85,4 +86,11 @@ def summarise(metrics: AllMetrics, config: Config) -> Metrics:
 
 
 def gains(metrics: AllMetrics, config: Config) -> list[tuple[float, Metrics]]:
-    return [(config.cases[case].stiffness_gain, values) for case, values in metrics.items() if case.startswith("gain")]
+    """k_s and metrics of the cases that differ in nothing else, k_s as it is varied."""
+    return [
+        (case.stiffness_gain, metrics[name])
+        for name, case in config.cases.items()
+        if name in metrics
+        and case.stiffness_gain in np.atleast_1d(config.stiffness_gain)
+        and changed(case, config) <= {"stiffness_gain", "law.impedance.stiffness_gain"}
+    ]

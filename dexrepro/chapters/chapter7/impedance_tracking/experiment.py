@@ -15,7 +15,7 @@ from dexrepro.physics.world import World
 from dexrepro.robots.pen_arm import pen_arm
 
 RATE = 100.0
-PICTURES = {"a": 0.5, "b": 1.8, "c": 2.7, "d": 3.5, "e": 4.6, "f": 6.5}
+PICTURES = {"a": 0.5, "b": 2.7, "c": 3.2, "d": 3.6, "e": 4.1, "f": 6.5}
 
 scene = desk.scene
 

@@ -45,11 +45,15 @@ def scene(config: Config) -> Any:
 
 
 def photographs(config: Config, reactions: np.ndarray) -> dict[str, Any]:
-    """The platform and four instants of a demonstration with the tall, far obstacle, forward."""
+    """The platform and four instants of a demonstration with the tall, far obstacle, forward.
+
+    It moves away where half the height over the obstacle is reached.
+    """
     number = [c.labels for c in skills.conditions(config)].index(("far", "tall", "forward"))
     path = reactions[number, 0]
     passage = skills.reach(config).moment(config.scene.far)
-    instants = {"platform": 0.0, "a": 0.0, "b": 0.25, "c": passage, "d": 1.0}
+    half = int(np.argmax(path[:, 2] > path[:, 2].max() / 2))
+    instants = {"platform": 0.0, "a": 0.0, "b": half / (len(path) - 1), "c": passage, "d": 1.0}
     angles = {name: pen_arm_angles(desk.to_robot(path[round(u * (len(path) - 1))])) for name, u in instants.items()}
     with scene(config) as world:
         return desk.photographs(world, angles, camera=desk.WIDE)

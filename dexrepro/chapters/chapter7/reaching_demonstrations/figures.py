@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import paths_of, traces_of
 
@@ -21,7 +21,8 @@ FIGURES = {
         "A small arm over a board with a stack of cubes.",
     ),
     "7.5": Figure(
-        "A simulated demonstration with the tall obstacle at the far place: the arm is led over it.",
+        "A simulated demonstration with the tall obstacle at the far place, at its start, at half its height, at the "
+        "obstacle and at its end.",
         "Four pictures of the arm passing over the stack.",
     ),
     "7.6": Figure(
@@ -36,7 +37,7 @@ FIGURES = {
     "7.7": Figure(
         "Simulated muscle stiffness from EMG for the four obstacles, five repetitions in each of three directions, "
         "with the mean ordinary stiffness as reference. The dependence on height and distance is built in.",
-        "Stiffness ends higher for the tall obstacle and rises earlier for the close one.",
+        "Muscle stiffness over time for four obstacles, by direction, with the ordinary one.",
     ),
 }
 TABLES = {"T7.1": "Factors and experimental conditions, completed, with what the demonstrations do"}
@@ -46,15 +47,16 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if "corrected" not in recordings:
         return {}
     config = config.cases.corrected
-    figures = {"7.6": draw_paths(recordings, metrics, config), "7.7": draw_stiffness(recordings["corrected"], config)}
+    figures = {
+        "7.6": draw_paths(recordings, metrics, config),
+        "7.7": draw_stiffness(recordings["corrected"], metrics["corrected"], config),
+    }
     if recordings["corrected"].images:
         figures |= draw_pictures(recordings["corrected"].images)
     return figures
 
 
 def draw_pictures(images: Mapping[str, Any]) -> Drawings:
-    from dexrepro.report import style
-
     shown = style.trimmed({name: image for name, image in images.items() if name != "platform"})
     platform, axes = style.subplots(width=style.ONE_COLUMN, height=2.5)
     axes.imshow(style.trimmed({"platform": images["platform"]})["platform"])
@@ -72,7 +74,6 @@ def draw_pictures(images: Mapping[str, Any]) -> Drawings:
 
 def draw_paths(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> Drawing:
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     recording, task = recordings["corrected"], skills.reach(config)
     figure, plans, sides = pictures.plans_over_sides(3, height=5.6)
@@ -107,19 +108,23 @@ def draw_paths(recordings: Recordings, metrics: Mapping[str, Any], config: Confi
     looks = {"demonstrated, ordinary": {"color": "#AAAAAA", "linewidth": 0.6, "linestyle": "--"}}
     looks |= {"learned": style.LINES["book"], "printed sign": style.LINES["printed"], **pictures.DIRECTIONS}
     style.legend_below(figure, looks)
-    style.title(figure, "Forward and right are distinct for a low obstacle and overlap for a tall one (simulated)")
+    low, tall = ([metrics["corrected"][f"separation_{d}_{h}"] for d in ("far", "close")] for h in ("low", "tall"))
+    style.title(
+        figure,
+        f"Forward and right are {style.at_least(min(low), 1)} deviations or more apart at a low obstacle, "
+        f"{style.at_most(max(tall), 1)} or less at a tall one (simulated)",
+    )
     return figure
 
 
-def progress(axes: Axes, time: np.ndarray, paths: np.ndarray, reach: skills.Reach, **line: Any) -> None:
+def progress(axes: Any, time: np.ndarray, paths: np.ndarray, reach: skills.Reach, **line: Any) -> None:
     """How far paths (N, 3) or (k, N, 3) [cm] are along the straight line from start to goal, over time."""
     for path in np.reshape(paths, (-1, *np.shape(paths)[-2:])):
         axes.plot(time, (path - reach.ends[0]) @ reach.axes[0], **line)
 
 
-def draw_stiffness(recording: Recording, config: Config) -> Drawing:
+def draw_stiffness(recording: Recording, found: Mapping[str, Any], config: Config) -> Drawing:
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     figure, axes = style.subplots(2, 2, height=3.3, sharex=True, sharey=True)
     traces = traces_of(recording, config)
@@ -140,7 +145,12 @@ def draw_stiffness(recording: Recording, config: Config) -> Drawing:
         panel.set_xlabel("Time [s]")
     for panel in axes[:, 0]:
         panel.set_ylabel("Stiffness $X^{stf}$ [-]")
-    style.title(figure, "Stiffness ends higher for a tall obstacle and rises earlier for a close one (built in)")
+    earlier = min(found[f"half_rise_far_{height}"] - found[f"half_rise_close_{height}"] for height in ("low", "tall"))
+    style.title(
+        figure,
+        f"Built in: stiffness ends {found['final_ratio']:.1f} times higher for a tall obstacle and rises "
+        f"{style.at_least(earlier, 1)} s earlier for a close one",
+    )
     return figure
 
 

@@ -38,7 +38,7 @@ CLAIMS = (
         "One group leaves a visible error when the old nodes' weights are fitted again, too.",
         greater(f"{LEARNING}.refit.rmse1", f"{LEARNING}.refit.spread"),
         source="ours",
-        note="The old kernels alone already fit the reactions to 0.3 mm, so that nothing is left to see.",
+        note="The old kernels alone already fit the reactions to {reactive_learning.refit.plain_refit:.1g} cm.",
     ),
     Claim(
         "C7.11",
@@ -62,9 +62,8 @@ CLAIMS = (
         control=less(f"{LEARNING}.frozen.plain_refit", 0.015),
         printed=to_the_floor("printed_sign"),
         where="Remark 7.2",
-        note="Down to a floor of 0.1 mm, which the smoothing of the demonstrations sets. "
-        "The bound of 0.15 mm is for the sensor noise chosen; with more of it, as in most samples of the study, the "
-        "floor is higher.",
+        note="Down to a floor of {reactive_learning.frozen.rmse8:.1g} cm, which the smoothing of the demonstrations "
+        "sets. The bound is for the sensor noise chosen; with more of it the floor is higher.",
     ),
     Claim(
         "C7.13",

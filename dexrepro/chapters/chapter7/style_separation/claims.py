@@ -32,6 +32,6 @@ CLAIMS = (
         "{style_separation.per_coordinate.mean1:.2g} cm (two {style_separation.per_coordinate.mean2:.2g}, one for a "
         "single obstacle {style_separation.one_obstacle.mean1:.2g}; repetitions spread by "
         "{style_separation.per_coordinate.spread:.2g} cm). That two are enough, and one for an obstacle, holds by "
-        "construction: two moments of reaction, and the same hump in every direction; expect 3 to 4 for people.",
+        "construction: two moments of reaction, and the same hump in every direction.",
     ),
 )

@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "7.A": Figure(
@@ -15,7 +16,7 @@ FIGURES = {
         "(a) Style parameters of each coordinate, (b) shared by the three coordinates; open: worst reaction, red: "
         "number of reactions that touch the obstacle. (c) Singular values of the reactive forcing terms of each "
         "coordinate. Green: demonstrations whose shape differs between directions.",
-        "One style parameter a reaction is not enough for two obstacles; two a coordinate are.",
+        "Errors over the number of style parameters, for each coordinate and for all together, and singular values.",
     ),
 }
 TABLES = {"T7.A": "Reactions represented by a common basis and style parameters"}
@@ -24,8 +25,6 @@ TABLES = {"T7.A": "Reactions represented by a common basis and style parameters"
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"per_coordinate", "shared"} <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     numbers: Mapping[str, Any] = metrics["per_coordinate"]
     figure, axes = style.subplots(1, 3, height=2.6)
     pairs = {"per_coordinate": ("book", axes[0]), "non_separable": ("extra1", axes[0]), "shared": ("book", axes[1])}
@@ -60,7 +59,12 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     axes[2].set(xlabel="Component [-]", ylabel="Singular value [cm]", xticks=range(1, 7))
     axes[2].legend()
     style.panel(axes[2], "c", "singular values")
-    style.title(figure, "One style parameter is not enough for two obstacles, two of each coordinate are")
+    one, two = (f"{10 * numbers[f'mean{rank}']:.2g}" for rank in (1, 2))
+    style.title(
+        figure,
+        f"With one style parameter a coordinate reactions err by {one} mm and {numbers['collisions1']:.0f} of twelve "
+        f"touch, with two by {two} mm and {numbers['collisions2']:.0f} touch",
+    )
     return {"7.A": figure}
 
 

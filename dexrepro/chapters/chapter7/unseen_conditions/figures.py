@@ -9,16 +9,18 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 from .experiment import METHODS
 
 FIGURES = {
     "7.C": Figure(
         "Fuzzy rules against simpler ways to react (simulated; not in the book). (a) Leave one out: RMS error of "
-        "each of the twelve reactions predicted from the other eleven (dots) and mean (bars). (b) 88 unseen "
-        "conditions (four places, five heights, five directions): mean error, and the share of reactions that touch "
-        "the obstacle; the person's own reactions to these conditions touch it in the share drawn as a line.",
-        "The fuzzy rules are closer than the nearest demonstration in unseen conditions and touch no obstacle.",
+        "each of the twelve reactions predicted from the other eleven (dots) and mean (bars). (b) "
+        "{unseen_conditions.main.unseen_count:.0f} unseen conditions of places, heights and directions: mean error, "
+        "and the share of reactions that touch the obstacle; the person's own reactions to these conditions touch it "
+        "in the share drawn as a line.",
+        "Errors of five ways to react where a condition was left out, and in unseen ones with the share that touch.",
     ),
 }
 TABLES = {"T7.3": "Reactions to conditions that were never shown"}
@@ -27,8 +29,6 @@ TABLES = {"T7.3": "Reactions to conditions that were never shown"}
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "main" not in recordings:
         return {}
-    from dexrepro.report import style
-
     left_out = recordings["main"].frames["left_out"]
     values: Mapping[str, Any] = metrics["main"]
     figure, (one, many) = style.subplots(1, 2, height=2.9)
@@ -55,10 +55,11 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         panel.set_xticks(places, labels, fontsize=6.5)
         panel.set_ylabel("RMS error [cm]")
         style.panel(panel, letter, text)
-    ratio = values["unseen_nearest"] / values["unseen_fuzzy"]
-    style.title(
-        figure, f"Fuzzy rules are {ratio:.1f} times closer than the nearest demonstration, and clear the obstacle"
+    fuzzy, nearest = (
+        f"{10 * values[f'unseen_{name}']:.1f} mm, {values[f'touches_{name}']:.0%} touch"
+        for name in ("fuzzy", "nearest")
     )
+    style.title(figure, f"Unseen conditions: fuzzy rules err by {fuzzy}; the nearest demonstration by {nearest}")
     return {"7.C": figure}
 
 
@@ -66,7 +67,7 @@ def tabulate(recordings: Recordings, metrics: Mapping[str, Any], config: Config)
     rows = []
     for case, values in metrics.items():
         for method, text in METHODS.items():
-            if case != "main" and method != "fuzzy":
+            if config.cases[case].fuzzy != config.fuzzy and method != "fuzzy":
                 continue  # the rivals do not depend on the fuzzy sets
             rows.append(
                 {

@@ -10,6 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
 FIGURES = {
@@ -70,8 +71,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(4, 2, height=7.2, sharex="row")
     lines = {"broad": ("BFNN", "book"), "fuzzy": ("FNN", "rival")}
     for axis, (column, letter) in enumerate(zip(grid.T, "xy")):
@@ -107,8 +106,6 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Drawing:
 
 
 def _draw_nodes(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, row = style.subplots(1, 3, height=2.4, sharey=True)
     for index, (axes, case) in enumerate(zip(row, THRESHOLDS)):
         run = recordings[case]
@@ -132,8 +129,6 @@ def _draw_nodes(recordings: Recordings, metrics: Any, config: Config) -> Drawing
 
 
 def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     lines = {
         "friction_broad": ("BFNN", "book"),
         "friction_fuzzy": ("FNN", "rival"),
@@ -164,15 +159,12 @@ def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) 
         style.panel(axes, letter, name)
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=6)
-    style.title(
-        figure, "Under friction BFNN beats FNN and static $H_\\infty$, but not $H_\\infty$ with integral action"
-    )
+    errors = "; ".join(f"{label} {metrics[case]['early_x']:.2g}" for case, (label, _) in lines.items())
+    style.title(figure, f"RMS error in x under friction, 5 to 10 s [mm]: {errors}")
     return figure
 
 
 def _draw_centres(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, row = style.subplots(1, 3, height=2.9, sharex=True, sharey=True)
     levels = config.networks.position_levels
     for axes, case in zip(row, THRESHOLDS):
@@ -190,8 +182,6 @@ def _draw_centres(recordings: Recordings, metrics: AllMetrics, config: Config) -
 
 
 def _draw_gains(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     marks = {
         "broad": ("broad", style.BOOK, "o"),
         "broad_plain": ("grown, no cos and sin", style.EXTRA[2], "D"),
@@ -218,7 +208,7 @@ def _draw_gains(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
             )  # fmt: skip
         for case, name in names.items():
             if case in metrics:
-                below = case.startswith("fuzzy")
+                below = config.cases[case].networks.kind == "fuzzy"
                 place = (metrics[case]["early_gain"], metrics[case][f"early_{letter}"])
                 side: Any = {"xytext": (-5, -5), "ha": "right", "va": "top"} if below else {"xytext": (4, 4)}
                 axes.annotate(name, place, textcoords="offset points", fontsize=6.5, **side)

@@ -46,7 +46,8 @@ CLAIMS = (
         "It also has the lower peak compression, learning included.",
         less(f"{SPONGE}.learned.peak_compression", f"{SPONGE}.lqr.peak_compression"),
         source="ours",
-        note="The stiff initial gain and the exploration, both our choice, press 36 mm deep.",
+        note="The stiff initial gain and the exploration, both our choice, press {sponge.learned.peak_compression:.0f} "
+        "mm deep.",
     ),
     Claim(
         "C8.17s",

@@ -25,6 +25,7 @@ from dexrepro.robots.baxter import baxter
 
 RATE = 50.0
 VIEW = Camera(target=(0.45, -0.3, 0.27), distance=1.2, yaw=25.0, pitch=-15.0)
+CLOSE = Camera(target=(0.77, -0.27, 0.09), distance=0.4, yaw=25.0, pitch=-4.0)
 
 
 def scene(config: Config) -> World:
@@ -83,7 +84,8 @@ def simulate(config: Config, rng: Rng) -> Recording:
         )
         if config.pictures:
             staged = stage(world, recording, config)
-            recording.images = {f"at_{t:g}s": world.snapshot(staged, t, VIEW, (480, 400)) for t in config.pictures}
+            for k, t in enumerate(config.pictures):  # the whole arm first, then where it touches
+                recording.images[f"at_{t:g}s"] = world.snapshot(staged, t, CLOSE if k else VIEW, (480, 400))
     gain: Any = interaction.gain
     if gain.learned is not None:
         truth = InteractionModel(config.sponge.stiffness, config.sponge.damping, config.exosystem)

@@ -13,13 +13,14 @@ from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import VIEW
 
 FIGURES = {
     "8.12": Figure(
-        "The simulated Baxter arm above and on the sponge at four instants, the box as low as it is pressed. The book "
-        "shows a photograph of the real arm.",
+        "The simulated Baxter arm above the sponge, and its gripper on it at three instants seen from near by, the box "
+        "as low as it is pressed. The book shows a photograph of the real arm.",
         "A red arm with its gripper pointing down meets a yellow block.",
     ),
     "8.13": Figure(
@@ -31,12 +32,12 @@ FIGURES = {
     "8.14": Figure(
         "Gain of the learned law and of the regulator over time on the simulated sponge, with the optimum (dashed). "
         "The book shows the same curves.",
-        "Both components move from the initial gain to the optimum in phase 3.",
+        "Both components of the gain over time, with the optimum and the regulator's.",
     ),
     "8.C": Figure(
         "Final compression of sponges of 100 to 1000 N/m under the optimal gain and under the regulator with the "
         "wrong model, in closed form (lines) and simulated (marks). Not in the book.",
-        "The learned law compresses soft sponges more and firm ones less than the regulator.",
+        "Final compression over the stiffness of the sponge under the optimal gain and under the regulator.",
     ),
 }
 TABLES = {
@@ -73,8 +74,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _phases(axes: Any, run: Recording, names: bool = True) -> None:
-    from dexrepro.report import style
-
     for number, (phase, colour) in enumerate(
         ((EXPLORING, "#EAF2F8"), (SOLVING, "#F6EFE0"), (TRANSFERRING, "#E9F5EC")), 1
     ):
@@ -85,22 +84,26 @@ def _phases(axes: Any, run: Recording, names: bool = True) -> None:
 
 
 def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
-    images = style.trimmed(recordings["learned"].images)
-    names = sorted(images, key=lambda name: float(name.removeprefix("at_").removesuffix("s")))
-    figure, row = style.subplots(1, len(names), height=1.7)
-    for axes, name in zip(np.atleast_1d(row), names):
-        axes.imshow(images[name])
+    run, values = recordings["learned"], metrics["learned"]
+    depth = 1e3 * np.maximum(config.cases.learned.sponge.surface - run["arm.tip"][:, 2], 0)
+    instants = sorted((float(name.removeprefix("at_").removesuffix("s")), name) for name in run.images)
+    figure, row = style.subplots(1, len(instants), height=1.8)
+    for axes, (instant, name) in zip(np.atleast_1d(row), instants):
+        image = run.images[name]
+        top = 0.1 if instant == instants[0][0] else 0.0  # the others are near views of where it touches
+        axes.imshow(image[round(top * len(image)) : round((top + 0.78) * len(image))])
         axes.set_axis_off()
-        axes.set_title(f"{name.removeprefix('at_').removesuffix('s')} s")
-    style.title(figure, "The simulated Baxter arm comes down on the sponge and yields")
+        pressed = depth[np.abs(run.time - instant).argmin()]
+        axes.set_title(f"{instant:g} s" + (f": {pressed:.0f} mm deep" if pressed else ""))
+    style.title(
+        figure,
+        f"The simulated arm presses the sponge {values['peak_compression']:.0f} mm deep while it learns, "
+        f"{values['final_compression']:.0f} mm in the end",
+    )
     return figure
 
 
 def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.0))
     grid = figure.add_gridspec(2, 3)
     depth, aside, error = (figure.add_subplot(place) for place in (grid[:, :2], grid[0, 2], grid[1, 2]))
@@ -144,13 +147,14 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     style.panel(error, "d", "Error to $x_0$")
     figure.legend(*depth.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     less = metrics["lqr"]["final_compression"] - metrics["learned"]["final_compression"]
-    style.title(figure, f"The learned law presses {less:.1f} mm less in the end, but more while it learns")
+    more = metrics["learned"]["peak_compression"] - metrics["lqr"]["peak_compression"]
+    style.title(
+        figure, f"The learned law presses {less:+.1f} mm less than the regulator in the end, {more:+.1f} mm more before"
+    )
     return figure
 
 
 def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     learned, lqr = recordings["learned"], recordings["lqr"]
     steps = learned.frames["iterates"]
     figure, row = style.subplots(1, 2, height=2.4)
@@ -168,8 +172,6 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
 
 
 def _draw_stiffness(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     cost = InteractionCost(config.cost.tracking, config.cost.effort, config.cost.output)
     commanded = 1e3 * (config.sponge.surface - config.path.end)
     stiffness = np.geomspace(100, 1000, 100)

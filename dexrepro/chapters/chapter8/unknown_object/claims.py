@@ -56,16 +56,15 @@ CLAIMS = (
         credits=SOFT,
         readings={
             "a reference that integrates the force error": calmer("soft", "lqr_switched"),
-            "the regulator's gain from the first contact on": calmer("soft", "lqr"),
         },
-        searched="the regulator from K_0 or constant, with both references",
+        searched="the regulator from K_0, as Fig. 8.11 shows it, with both references",
         where="8.4.3",
         note="Both laws start from the same K_0, as the book says and its Fig. 8.11 shows: force rate "
         "{unknown_object.static_soft.force_rate:.2f} against {unknown_object.static_lqr_switched.force_rate:.2f} N/s, "
         "oscillation {unknown_object.static_soft.oscillation:.2g} against "
         "{unknown_object.static_lqr_switched.oscillation:.3g} mm. With the integrating reference neither oscillates "
-        "(rate {unknown_object.soft.force_rate:.2f} against {unknown_object.lqr_switched.force_rate:.2f} N/s); to a "
-        "gain that is constant nothing happens at all.",
+        "(rate {unknown_object.soft.force_rate:.2f} against {unknown_object.lqr_switched.force_rate:.2f} N/s); a "
+        "regulator that is constant from the first contact, which Fig. 8.11 contradicts, has nothing to change.",
     ),
     Claim(
         "C8.12",
@@ -98,9 +97,9 @@ CLAIMS = (
         control=less(f"{OBJECT}.lqr.fraction_theory", f"{OBJECT}.lqr_true.fraction_theory", 1.01),
         printed=less(f"{OBJECT}.soft.desired_path_error", 0.01),
         where="8.4.3",
-        note="Optimal for the printed cost with M = -1, which is not the circle's. Three digits, limited by the half "
-        "step by which velocities of the physics engine lag; nine digits on exact data. The regressor s must obey "
-        "(8.8); the desired path x_d/N does not (E8.09).",
+        note="Optimal for the printed cost with M = -1, which is not the circle's. It is off by "
+        "{unknown_object.soft.gain_error_x:.1g}, for the half step by which velocities of the physics engine lag. The "
+        "regressor s must obey (8.8); the desired path x_d/N does not (E8.09).",
     ),
     Claim(
         "C8.13k",
@@ -127,7 +126,8 @@ CLAIMS = (
         "The cost of the whole contact, learning included, is not higher than the regulator's.",
         less(f"{OBJECT}.soft.contact_cost", f"{OBJECT}.lqr.contact_cost"),
         source="ours",
-        note="Over the one contact the wrong-model regulator wins: the soft change keeps the bad initial gain longest.",
+        note="{unknown_object.soft.contact_cost:.3g} against {unknown_object.lqr.contact_cost:.3g}: the soft change "
+        "keeps the bad initial gain longest.",
     ),
     Claim(
         "C8.15",
@@ -136,7 +136,8 @@ CLAIMS = (
         every(less(f"{OBJECT}.soft.surface_error", 0.1), less(f"{OBJECT}.soft.gain_error_x", 0.01)),
         control=less(f"{OBJECT}.absolute.gain_error_x", 0.01),
         where="8.4.3",
-        note="The surface position is needed and comes from the first contact force [mm]; 5 mm of error cost 7 % of "
-        "the gain.",
+        note="The surface position is needed and comes from the first contact force [mm]; with 5 mm of error K_x is "
+        "{unknown_object.soft.surface_low_gain_x:.3f} or {unknown_object.soft.surface_high_gain_x:.3f} N/m in place of "
+        "{unknown_object.soft.gain_x:.3f}.",
     ),
 )

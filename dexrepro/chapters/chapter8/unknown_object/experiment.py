@@ -178,12 +178,17 @@ def _settled(recording: Recording, config: Config) -> Metrics:
     }
 
 
+def objects(config: Config) -> list[str]:
+    """The cases with the object of the book, and with each other one."""
+    return [name for name, case in config.cases.items() if name == "soft" or case.object != config.object]
+
+
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """Largest relative error of the learned gain over all objects."""
     errors = [
         error
-        for case, found in metrics.items()
-        for error in (found.get("gain_error_x"), found.get("gain_error_s"))
-        if error is not None and (case == "soft" or case.startswith("object"))
+        for case in objects(config)
+        for error in (metrics.get(case, {}).get(key) for key in ("gain_error_x", "gain_error_s"))
+        if error is not None
     ]
     return {"worst_gain_error": max(errors) if errors else None}

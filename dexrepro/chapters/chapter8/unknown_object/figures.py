@@ -13,7 +13,10 @@ from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING, soft_transfer
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
+
+from .experiment import objects
 
 FIGURES = {
     "8.2": Figure(
@@ -30,17 +33,17 @@ FIGURES = {
         "Contact with the unknown object: position along x, error to the virtual reference with its bound, contact "
         "force, and position with the reference taken from the interaction law itself. The book shows position and "
         "error.",
-        "The soft change of gain keeps the force continuous; the abrupt one drops it within half a second.",
+        "Position, error and contact force under soft and abrupt changes of gain and under the regulator, over time.",
     ),
     "8.11": Figure(
         "Gain of the learned law and of the regulator over time with the phases of Algorithm 8.1, and the iterates of "
         "the policy iteration with the optimum (dashed). The book shows the gains over time.",
-        "Five iterations take the gain from its initial value to the optimum; the transfer then follows half a sine.",
+        "Gain over the iterations, from its initial value to the optimum, and over time, along half a sine.",
     ),
     "8.B": Figure(
         "Learned gain against the optimum of the Riccati equation for objects of 5 to 1000 N/m, the relative error, "
         "and the spread of the gain under sensor noise. Not in the book.",
-        "The learned gain lies on the optimum within half a percent over more than two decades of stiffness.",
+        "Learned gain and optimum over the stiffness of the object, their difference, and the effect of noise.",
     ),
 }
 TABLES = {
@@ -82,8 +85,6 @@ def _cost(config: Config) -> InteractionCost:
 
 
 def _phases(axes: Any, run: Recording, names: bool = True) -> None:
-    from dexrepro.report import style
-
     colours = {EXPLORING: "#EAF2F8", SOLVING: "#F6EFE0", TRANSFERRING: "#E9F5EC"}
     for number, (phase, colour) in enumerate(colours.items(), 1):
         inside = run.time[run["phase"] == phase]
@@ -93,8 +94,6 @@ def _phases(axes: Any, run: Recording, names: bool = True) -> None:
 
 
 def _draw_transfer(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     initial = np.array(config.interaction.gain.initial, float)
     optimal = np.array([metrics["soft"]["gain_x"], metrics["soft"]["gain_s"]])
     progress = np.linspace(0.0, 1.0, 201)
@@ -117,8 +116,6 @@ def _draw_transfer(recordings: Recordings, metrics: AllMetrics, config: Config) 
 
 
 def _draw_scene(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     run = recordings["soft"]
     times = (0.0, metrics["soft"]["touched_at"], 15.0)
     figure, axes = style.subplots(1, 1, width=style.ONE_COLUMN, height=3.0)
@@ -141,8 +138,6 @@ def _draw_scene(recordings: Recordings, metrics: Any, config: Config) -> Drawing
 
 
 def _draw_contact(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(2, 2, height=4.8)
     (place, error), (force, static) = grid
     start, end = metrics["soft"]["touched_at"] - 0.6, metrics["soft"]["left_at"] + 0.6
@@ -173,13 +168,16 @@ def _draw_contact(recordings: Recordings, metrics: Any, config: Config) -> Drawi
         _phases(axes, soft)
         axes.set_xlim(start, end)
     figure.legend(*place.get_legend_handles_labels(), loc="outside lower center", ncols=6)
-    style.title(figure, "The soft change keeps the force continuous; the abrupt one drops it at once")
+    soft_rate, abrupt_rate = (metrics[case]["force_rate"] for case in ("soft", "abrupt"))
+    style.title(
+        figure,
+        f"The measured force changes at {style.at_most(soft_rate, 2)} N/s at most with the soft change, at up to "
+        f"{abrupt_rate:.1f} N/s with the abrupt one",
+    )
     return figure
 
 
 def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     soft, lqr, steps = recordings["soft"], recordings["lqr"], recordings["soft"].frames["iterates"]
     figure, grid = style.subplots(2, 2, height=4.0, sharex="col")
     start, end = metrics["soft"]["touched_at"], metrics["soft"]["left_at"]
@@ -209,10 +207,9 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
 
 
 def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
-    cases = [case for case in recordings if case == "soft" or case.startswith("object")]
-    found = sorted((config.cases[case].object.stiffness, metrics[case]) for case in cases)
+    found = sorted(
+        (config.cases[name].object.stiffness, metrics[name]) for name in objects(config) if name in recordings
+    )
     stiffness = np.array([item[0] for item in found], float)
     curve = np.geomspace(4, 1250, 60)
     damping = config.object.damping
@@ -242,7 +239,8 @@ def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawi
         style.panel(axes, letter, name)
     worst = 100.0 * (metrics.get("summary", {}).get("worst_gain_error") or float("nan"))
     style.title(
-        figure, f"The learned gain is optimal within {worst:.1f} % from {stiffness[0]:g} to {stiffness[-1]:g} N/m"
+        figure,
+        f"The learned gain is optimal within {style.at_most(worst, 1)} % for {stiffness[0]:g} to {stiffness[-1]:g} N/m",
     )
     return figure
 

@@ -1,0 +1,370 @@
+"""Tune a case: search the parameters for which one of its metrics is best; compare the laws of a folder so tuned.
+
+Half of the budget covers the ranges evenly (scrambled Sobol points), the rest lies, also by Sobol points, in ever
+smaller boxes around the best so far; the first run is the case as it stands. Runs are kept with what they are made of:
+the same search repeats none, and one with a larger budget uses those there are.
+"""
+
+from __future__ import annotations
+
+import copy
+import importlib
+import inspect
+import re
+import sys
+import zlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+from dexrepro import chapters
+from dexrepro.arrays import Array
+from dexrepro.case import live, targets
+from dexrepro.case import run as run_case
+from dexrepro.checks import leaves, set_value, value_at
+from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.control.contract import KINDS
+from dexrepro.errors import InputError, nearest
+from dexrepro.experiment import Metrics
+from dexrepro.plan import content_of, lacking, writable
+from dexrepro.pool import Failure, Pool
+from dexrepro.provenance import provenance
+from dexrepro.selection import chapters_of
+from dexrepro.storage import digest_of, finite, read_json, write_json
+from dexrepro.study import within
+
+ROUNDS, SHRINK = 4, 0.4  # boxes around the best, each this share as wide as the one before
+EDGE = 0.02  # share of a range that counts as its edge
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Search:
+    """What is tuned: a case of resolved ``values``, ranges by dotted key, a metric; ``sign`` is -1 to maximise it."""
+
+    chapter: str
+    experiment: str
+    case: str
+    values: dict[str, Any]
+    ranges: dict[str, Range]
+    metric: str
+    sign: int
+    seed: int
+
+    @property
+    def name(self) -> str:
+        return f"{self.experiment}.{self.case}"
+
+    def at(self, point: Array) -> dict[str, float]:
+        """The parameters at a point of the unit cube."""
+        return {
+            key: within(float(share), low, high, isinstance(value_at(self.values, key), int))
+            for share, (key, (low, high)) in zip(point, self.ranges.items(), strict=True)
+        }
+
+    def config(self, chosen: Mapping[str, float]) -> dict[str, Any]:
+        """The configuration of the case with some parameters chosen."""
+        config = copy.deepcopy(self.values)
+        for key, value in chosen.items():
+            set_value(config, key, value)
+        return {**config, "perturbation": 0.0, "seed": self.seed, "case": self.case}
+
+    def metrics(self, chosen: Mapping[str, float]) -> Metrics:
+        """What one run measures."""
+        definition = chapters.load(self.chapter).experiment(self.experiment)
+        return finite(run_case(definition, live(self.config(chosen)), self.seed)[1])
+
+    def override(self, chosen: Mapping[str, float]) -> str:
+        """The words that give the case these parameters; a list is given whole."""
+        config, words = self.config(chosen), {}
+        for key in chosen:
+            while key.rpartition(".")[2].isdigit():
+                key = key.rpartition(".")[0]
+            text = str(value_at(config, key)).replace(" ", "")
+            words[key] = f"'++{self.name.replace('.', '.cases.', 1)}.{key}={text}'"
+        return " ".join(words.values())
+
+
+@dataclass
+class Found:
+    """What a search found: the metric as the case stands and at its best, the parameters there, and what to know."""
+
+    start: float | None
+    best: float | None
+    chosen: dict[str, float]
+    runs: int
+    failed: int
+    edges: list[str]  # sentences: parameters whose best lies at the edge of the range, or why there is none
+
+
+def search_of(
+    case: str, metric: str, sign: int, parameters: Sequence[str] = (), overrides: Sequence[str] = ()
+) -> Search:
+    """The search that words ask for: ``parameters`` such as ``law.gain=0.01..0.1``, or ``law.gain`` for its own range.
+
+    Without parameters those of the case's law are tuned, see ``_of_laws``. Raises InputError with one sentence.
+    """
+    experiment, _, name = case.partition(".")
+    numbers, overrides = chapters_of([f"only={experiment}", *overrides])
+    if needed := lacking(chapters.load(numbers[0]).experiment(experiment)):
+        raise InputError(f"{experiment} {needed}")
+    composed = compose_chapter(numbers[0], overrides)
+    cases = experiment_cases(composed, experiment)
+    if name not in cases:
+        raise InputError(f"case = {case} is not allowed: it must be EXPERIMENT.CASE; {nearest(name, cases)}")
+    values, declared = cases[name], _declared(numbers[0], experiment, composed)
+    declared = {key: span for key, span in declared.items() if _is_number(value_at(values, key))}
+    ranges = dict(_asked(word, values, declared) for word in parameters) or _of_laws(
+        values, declared, composed[experiment]
+    )
+    return Search(numbers[0], experiment, name, values, ranges, metric, sign, composed["seed"])
+
+
+def _declared(chapter: str, experiment: str, composed: Mapping[str, Any]) -> dict[str, Range]:
+    """Ranges that the configuration declares, by key within the experiment: its own comments and those referred to."""
+    origins, found = provenance(chapter), {}
+    for key, _ in leaves({name: value for name, value in composed[experiment].items() if name != "cases"}):
+        place: str | None = f"{experiment}.{key}"
+        while place:
+            origin, node = origins.get(re.sub(r"(\.\d+)+$", "", place)), value_at(composed, place)
+            if origin and origin.low is not None and origin.high is not None:
+                found[key] = (origin.low, origin.high)
+            referred = re.fullmatch(r"\$\{([\w.]+)\}", node) if isinstance(node, str) else None
+            place = referred[1] if referred and key not in found else None
+    return found
+
+
+def _asked(word: str, values: Mapping[str, Any], declared: Mapping[str, Range]) -> tuple[str, Range]:
+    """A parameter and its range from a word such as ``law.gain=0.01..0.1``."""
+    key, mark, text = word.partition("=")
+    numbers = [name for name, value in leaves(values) if _is_number(value)]
+    if key not in numbers:
+        raise InputError(f"unknown parameter '{key}': {nearest(key, numbers)}")
+    if not mark and key in declared:
+        return key, declared[key]
+    ends = text.split("..")
+    try:
+        low, high = map(float, ends)
+    except ValueError:
+        low = high = 0.0
+    if not low < high:
+        raise InputError(f"{key} = {text} is not allowed: it must be a range such as {key}=0.1..1, low before high")
+    return key, (low, high)
+
+
+def _of_laws(values: Mapping[str, Any], declared: Mapping[str, Range], block: Mapping[str, Any]) -> dict[str, Range]:
+    """What of the case's law declares a range; where nothing does, its own positive numbers, a quarter to four times.
+
+    Its own are those that stand in it, not what it refers to, such as ``${shared.dt}``.
+    """
+    of_law = tuple(f"{law}." for law in _laws(values))
+    found = {key: span for key, span in declared.items() if key.startswith(of_law)}
+    own = {key: value for key, value in leaves(values) if key.startswith(of_law) and isinstance(value, float)}
+    return found or {
+        key: (value / 4, value * 4)
+        for key, value in own.items()
+        if value > 0 and not isinstance(value_at(block, key), str)
+    }
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _laws(values: Mapping[str, Any]) -> list[str]:
+    """Keys of the blocks that build the case's law: its own, else the controller's that is chosen, else all."""
+    found = [key.rpartition(".")[0] for key, value in leaves(values) if key.endswith("_target_") and _kind(str(value))]
+    chosen = ("law", f"laws.{values.get('controller')}", str(values.get("controller")))
+    return next(([law] for law in chosen if law in found), found)
+
+
+def _kind(target: str) -> str | None:
+    """The kind of the law that a ``_target_`` names, None where it is no law."""
+    module, _, name = target.rpartition(".")
+    try:
+        return getattr(getattr(importlib.import_module(module), name), "kind", None)
+    except (ImportError, AttributeError, ValueError):
+        return None
+
+
+# ----------------------------------------------------------------------------------------------------------- the search
+
+
+def run(
+    search: Search,
+    budget: int,
+    results: Path,
+    workers: int | None = None,
+    tell: Callable[[str], None] = lambda text: None,
+) -> tuple[Found, Path]:
+    """Search with ``budget`` runs, store all of them under ``results/tuning``; what was found, and the file.
+
+    tell: is told how far it is, after every round.
+    """
+    definition = chapters.load(search.chapter).experiment(search.experiment)
+    about = {"case": search.name, "metric": search.metric, "sign": search.sign, "ranges": search.ranges,
+             "seed": search.seed}  # fmt: skip
+    path = results / "tuning" / f"{search.name}-{digest_of([about, search.values])[:10]}.json"
+    writable(results)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    kept = {row["content"]: row for row in read_json(path)["runs"]} if path.exists() else {}
+    rows: list[dict[str, Any]] = []
+    with Pool(workers) as pool:
+
+        def measure(points: Sequence[Array | None]) -> None:
+            wanted = [{} if point is None else search.at(point) for point in points]
+            contents = [content_of(definition, search.config(chosen)) for chosen in wanted]
+            for k, content in enumerate(contents):
+                if content not in kept:
+                    pool.add(k, search.metrics, wanted[k])
+            fresh = dict(pool.results())
+            for k, (point, chosen, content) in enumerate(zip(points, wanted, contents)):
+                row = kept.get(content) or _row(search, content, chosen, fresh[k])
+                rows.append({**row, "point": None if point is None else [round(float(x), 6) for x in point]})
+            found = _found(search, rows)
+            write_json(path, about | vars(found) | {"override": search.override(found.chosen), "runs": rows})
+            best = "no usable one" if found.best is None else f"{found.best:.4g}"
+            tell(f"{search.name}: {len(rows)} of {budget} runs, {search.metric} {best}")
+
+        measure([None])
+        for points in _rounds(search, budget - 1, rows):
+            if len(points):
+                measure(list(points))
+    return _found(search, rows), path
+
+
+def _rounds(search: Search, budget: int, rows: Sequence[Mapping[str, Any]]) -> Iterator[Array]:
+    """Points of the unit cube to be run next: an even cover, then boxes around the best of all ``rows`` so far."""
+    if not search.ranges:
+        return
+    sobol = stats.qmc.Sobol(len(search.ranges), seed=zlib.crc32(f"{search.name}.{search.seed}".encode()))
+    unit, sizes = iter(sobol.random(4096)), [len(part) for part in np.array_split(np.arange(budget // 2), ROUNDS)]
+    yield np.array(list(islice(unit, budget - sum(sizes))))
+    for number, size in enumerate(sizes, 1):
+        tried = [row for row in rows if row["point"] is not None and row["value"] is not None]
+        points = np.array(list(islice(unit, size)))
+        if size and tried:
+            best = np.array(min(tried, key=lambda row: search.sign * row["value"])["point"])
+            points = np.clip(best + SHRINK**number * (points - 0.5), 0, 1)
+        yield points
+
+
+def _row(search: Search, content: str, chosen: Mapping[str, float], result: Any) -> dict[str, Any]:
+    """One run as it is stored. Raises InputError for a metric that the case does not have."""
+    if isinstance(result, Failure):
+        return {"content": content, "parameters": chosen, "value": None, "error": result.sentence}
+    if search.metric not in result:
+        raise InputError(f"unknown metric '{search.metric}' of {search.name}: {nearest(search.metric, result)}")
+    return {"content": content, "parameters": chosen, "value": result[search.metric]}
+
+
+def _found(search: Search, rows: Sequence[Mapping[str, Any]]) -> Found:
+    valid = [row for row in rows if row["value"] is not None]
+    if not valid:
+        why = rows[0].get("error", "undefined")
+        return Found(None, None, {}, len(rows), len(rows), [f"no run gave '{search.metric}'; the first: {why}"])
+    best = min(valid, key=lambda row: search.sign * row["value"])
+    edges = []
+    for share, (key, (low, high)) in zip(best["point"] or (), search.ranges.items()):
+        if min(share, 1 - share) < EDGE:
+            side = "lower" if share < EDGE else "upper"
+            edges.append(f"{key} = {best['parameters'][key]:g} lies at the {side} edge of {low:g}..{high:g}: widen it")
+    failed = len(rows) - len(valid)
+    return Found(rows[0]["value"], best["value"], dict(best["parameters"]), len(rows), failed, edges)
+
+
+# -------------------------------------------------------------------------------------------------- laws of a folder
+
+
+def laws_in(folder: Path) -> dict[str, type]:
+    """The laws that the modules of a folder define, by what ``_target_`` calls them."""
+    if not folder.is_dir():
+        raise InputError(f"laws = {folder} is not allowed: there is no such folder")
+    if (path := str(folder.resolve())) not in sys.path:
+        sys.path.append(path)
+    found = {}
+    for file in sorted(folder.glob("*.py")):
+        if file.stem.startswith(("test_", "_", "conftest")):
+            continue
+        try:
+            module = importlib.import_module(file.stem)
+        except Exception as error:
+            raise InputError(f"{file} cannot be imported: {type(error).__name__}: {error}") from error
+        for name, law in inspect.getmembers(module, inspect.isclass):
+            if law.__module__ == file.stem and getattr(law, "kind", None) in KINDS:
+                found[f"{file.stem}.{name}"] = law
+    if not found:
+        raise InputError(
+            f"laws = {folder} is not allowed: no class in it declares kind = 'joint', 'end_point' or 'holding'"
+        )
+    return found
+
+
+def joined(search: Search, target: str, law: type) -> Search | None:
+    """The same case with the law in place of its own; None where the comparison is of another kind.
+
+    A constructor's argument takes, in this order: the middle of its range in the class attribute ``ranges``, its
+    default, the value of that name in the case (``dt``, ``desired_force``). Those with a range are tuned.
+    """
+    kinds = {_kind(text) for text in targets(search.values)}
+    if "law" not in search.values:
+        raise InputError(f"{search.experiment} compares no laws: its cases have no 'law'")
+    if law.kind not in kinds:  # type: ignore[attr-defined]
+        return None
+    spans: dict[str, Range] = dict(getattr(law, "ranges", {}))
+    needs = set(getattr(law, "needs", ()))
+    known = {key.rpartition(".")[2]: value for key, value in leaves(search.values)}
+    arguments: dict[str, Any] = {"_target_": target, **({"_partial_": True} if needs else {})}
+    for name, parameter in inspect.signature(law).parameters.items():
+        if name in spans:
+            arguments[name] = within(0.5, *spans[name])
+        elif name in needs or parameter.default is not parameter.empty:
+            continue
+        elif name in known:
+            arguments[name] = known[name]
+        else:
+            raise InputError(
+                f"{target}: nothing says what '{name}' is; give it a default, or ranges = {{'{name}': (low, high)}}"
+            )
+    ranges = {f"law.{name}": (float(low), float(high)) for name, (low, high) in spans.items()}
+    case = target.rpartition(".")[2]
+    return replace(search, case=case, values={**search.values, "law": arguments}, ranges=ranges)
+
+
+def leaderboard(
+    cases: Sequence[str], laws: Mapping[str, type], metrics: Sequence[str], sign: int, tuned: Callable[[Search], Found]
+) -> list[dict[str, Any]]:
+    """The laws beside those of the cases named, each ``tuned`` alike; rows by comparison, the best first.
+
+    metrics: one for all experiments, or one each. In each experiment the laws take the place of the law of the first
+    case named.
+    """
+    names = list(dict.fromkeys(case.partition(".")[0] for case in cases))
+    if len(metrics) not in (1, len(names)):
+        raise InputError(f"{','.join(metrics)} is not allowed: give one metric, or one each for {', '.join(names)}")
+    metric = dict(zip(names, [*metrics] * (len(names) if len(metrics) == 1 else 1)))
+    searches = [search_of(case, metric[case.partition(".")[0]], sign) for case in cases]
+    contexts = {search.experiment: search for search in reversed(searches)}
+    own = [joined(context, *law) for context in contexts.values() for law in laws.items()]
+    rows = []
+    for search in [*searches, *(search for search in own if search)]:
+        try:
+            found = tuned(search)
+        except InputError as error:
+            found = Found(None, None, {}, 0, 0, [str(error)])  # a metric that this comparison does not have
+        rows.append(
+            {
+                "comparison": search.experiment, "law": search.case,
+                "whose": "the book's" if search in searches else "yours", "metric": search.metric,
+                "as given": found.start, "tuned": found.best, "runs": found.runs, "failed": found.failed,
+                "parameters": ", ".join(f"{key}={value:g}" for key, value in found.chosen.items()),
+                "to know": "; ".join(found.edges) or ("" if search.ranges else "nothing to tune"),
+            }
+        )  # fmt: skip
+    last = float("inf")
+    return sorted(rows, key=lambda row: (row["comparison"], last if row["tuned"] is None else sign * row["tuned"]))

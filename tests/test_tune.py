@@ -1,0 +1,128 @@
+"""A search finds what is best within a budget, repeats nothing, says where a range ends it; laws of a folder join."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from dexrepro import tune
+from dexrepro.errors import InputError
+
+RESULTS = Path("results")
+Command = Callable[[str], tuple[int, str]]
+
+
+class Bowl(tune.Search):
+    """Least at start = 1.3, which no run need simulate."""
+
+    def metrics(self, chosen):
+        return {"final": (chosen.get("start", 1.0) - 1.3) ** 2}
+
+
+def bowl(budget, **changed):
+    found = tune.search_of("decay.plain", "final", 1, ["start"])
+    return tune.run(Bowl(**{**vars(found), **changed}), budget, RESULTS, workers=1)
+
+
+def test_the_search_closes_in_on_the_best(toy):
+    found, path = bowl(24)
+    assert found.chosen["start"] == pytest.approx(1.3, abs=0.03)
+    assert (found.start, found.runs, found.edges) == (pytest.approx(0.09), 24, [])
+    assert len(json.loads(path.read_text())["runs"]) == 24
+
+
+def test_a_best_at_the_edge_of_its_range_is_said(toy):
+    found, _ = bowl(24, ranges={"start": (0.5, 1.2)})
+    assert "upper edge of 0.5..1.2" in found.edges[0]
+
+
+def test_a_search_that_was_made_repeats_no_run(toy, monkeypatch):
+    before, _ = bowl(8)
+    monkeypatch.setattr(tune.Pool, "add", lambda *_: pytest.fail("it ran again"))
+    assert bowl(8)[0] == before
+
+
+def test_what_fails_is_counted_and_what_does_not_exist_refused(toy):
+    search = tune.search_of("decay.plain", "none", 1, ["start"])
+    found, _ = tune.run(search, 3, RESULTS, workers=1)
+    assert (found.best, found.failed) == (None, 3)
+    for words, said in {
+        ("decay.plane", "final", "start"): "did you mean 'plain'",
+        ("decay.plain", "final", "begin"): "unknown parameter 'begin'",
+        ("decay.plain", "final", "start=2..1"): "low before high",
+        ("decay.plain", "finish", "start"): "unknown metric 'finish'",
+    }.items():
+        case, metric, parameter = words
+        with pytest.raises(InputError, match=said):
+            tune.run(tune.search_of(case, metric, 1, [parameter]), 2, RESULTS, workers=1)
+
+
+def test_the_line_that_is_printed_reproduces_the_best(toy, command):
+    code, text = command("tune case=decay.plain minimise=final budget=4 workers=1 start gain=1..3 decay.duration=1.0")
+    assert code == 0
+    code, _ = command(text.strip().splitlines()[-1].partition("dexrepro ")[2].replace("'", "") + " workers=1")
+    assert code == 0
+    (stored,) = RESULTS.glob("tuning/decay.plain-*.json")
+    (metrics,) = RESULTS.glob("runs/decay-*/metrics.json")
+    assert json.loads(metrics.read_text())["decay.plain.final"] == pytest.approx(json.loads(stored.read_text())["best"])
+
+
+def test_words_that_are_missing_or_wrong_are_one_sentence(toy, command):
+    for words, said in {
+        "tune minimise=final": "case= is missing",
+        "tune case=decay.plain": "give minimise=METRIC or maximise=METRIC",
+        "tune case=decay.plain minimise=final budget=1": "budget = 1 is not allowed",
+        "tune case=decay.plain minimise=final": "declares a range; name some",
+        "compare case=decay.plain minimise=final laws=nowhere": "there is no such folder",
+    }.items():
+        code, text = command(words)
+        assert (code, said in text) == (2, True), text
+
+
+LAW = """
+class Mine:
+    kind = "holding"
+    ranges = {"gain": (0.1, 1.0)}
+    def __init__(self, gain, desired_force, dt, limit=3.0): ...
+    def reset(self, measured): ...
+    def __call__(self, measured): return 0.0
+
+class Joint(Mine):
+    kind = "joint"
+"""
+
+
+def test_laws_of_a_folder_stand_beside_the_books_where_their_kind_fits(tmp_path, monkeypatch):
+    (tmp_path / "laws_of_a_folder.py").write_text(LAW)
+    monkeypatch.syspath_prepend(tmp_path)
+    laws = tune.laws_in(tmp_path)
+    searches = []
+
+    def tuned(search):
+        searches.append(search)
+        return tune.Found(2.0, 1.0 if search.case == "Mine" else 1.5, {}, 8, 0, [])
+
+    rows = tune.leaderboard(["holding_comparison.s4", "holding_comparison.s8"], laws, ["rmse"], 1, tuned)
+    assert [(row["law"], row["whose"]) for row in rows] == [
+        ("Mine", "yours"), ("s4", "the book's"), ("s8", "the book's"),
+    ]  # fmt: skip
+    passive, proposed, mine = searches
+    assert set(passive.ranges) == {f"laws.passive_impedance.{name}" for name in ("mass", "damping")}
+    assert all(key.startswith("laws.impedance.") for key in proposed.ranges)
+    assert mine.ranges == {"law.gain": (0.1, 1.0)}
+    law = mine.values["law"]
+    assert law["_target_"] == "laws_of_a_folder.Mine"
+    assert (law["desired_force"], law["dt"]) == (1.0, mine.values["step"])
+    assert "limit" not in law
+
+
+def test_a_law_of_which_nothing_says_how_it_is_built_is_one_sentence(tmp_path, monkeypatch):
+    (tmp_path / "a_law_unbuilt.py").write_text(
+        "class Mine:\n    kind = 'holding'\n    def __init__(self, gizmo): ...\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(InputError, match=r"nothing says what 'gizmo' is; .* ranges = "):
+        tune.leaderboard(["holding_comparison.s4"], tune.laws_in(tmp_path), ["rmse"], 1, lambda _: None)
