@@ -38,7 +38,8 @@ def test_every_dependency_is_pinned_and_in_the_conda_environment() -> None:
     assert {name: conda.get(name) for name in needed} == needed
     pins = dict(line.split("==") for line in (ROOT / ".ci/constraints.txt").read_text().split())
     pinned = {name.lower().replace("_", "-") for name in pins}
-    assert {*needed, *requirements(PROJECT["optional-dependencies"]["dev"])} <= pinned
+    extras = [line for extra in ("dev", "docs") for line in PROJECT["optional-dependencies"][extra]]
+    assert {*needed, *requirements(extras)} <= pinned
 
 
 def test_the_container_is_as_the_linter_wants_it() -> None:

@@ -1,4 +1,4 @@
-"""The README's examples run as they stand."""
+"""The examples of the README and of the manual run as they stand."""
 
 from __future__ import annotations
 
@@ -17,10 +17,12 @@ from test_cli import SHORT
 from dexrepro import chapters, scoreboard
 
 README = (ROOT / "README.md").read_text()
+PAGES = [README, *(path.read_text() for path in sorted((ROOT / "docs").glob("*.md")))]
+PAGES += [path.read_text() for path in sorted((ROOT / "docs/how-to").glob("*.md"))]
 
 
 def blocks(language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+    return [text for page in PAGES for text in re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL)]
 
 
 def block(language: str, containing: str) -> str:
@@ -110,7 +112,7 @@ def test_own_demonstrations_take_the_place_of_the_synthetic(shell: Shell, tmp_pa
 
 
 def own_experiment(home: Path) -> None:
-    """The experiment of the README, in the folder that it names."""
+    """The experiment of the manual, in the folder that it names."""
     (home / "lab/push").mkdir(parents=True)
     for language, name in (
         ("python", "experiment.py"),
@@ -147,7 +149,8 @@ def test_another_book_is_another_folder(shell: Shell, tmp_path: Path) -> None:
     assert "Teleoperation" not in page
 
 
-COMMANDS = [line.partition("#")[0].strip() for line in block("sh", "dexrepro list").splitlines() if "…" not in line]
+LISTS = [text for text in blocks("sh") if "dexrepro list" in text or text.startswith("dexrepro run figure=")]
+COMMANDS = [line.partition(" #")[0].strip() for text in LISTS for line in text.splitlines() if "…" not in line]
 
 
 @pytest.mark.parametrize("command", [command for command in COMMANDS if " study " not in command])
