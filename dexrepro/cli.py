@@ -476,6 +476,11 @@ def draw_command(options: argparse.Namespace) -> int:
     from dexrepro.selection import existing, quoted, selected
 
     numbers, only, results, _, extra = selected(options.selection, "draw")
+    given, look, kind = dict(word.partition("=")[::2] for word in options.selection), extra.pop("style", None), None
+    if look or "format" in extra:
+        from dexrepro.report import export
+
+        kind, look = export.checked(extra.pop("format", "pdf"), look or "paper")
     found = [(n, e, existing(results) / f"chapter{n}" / e.name) for n in numbers for e in select(n, only or None, None)]
     if extra:
         words = [quoted(f"results={results}"), *(quoted(f"case={value}") for value in extra.values())]
@@ -491,12 +496,17 @@ def draw_command(options: argparse.Namespace) -> int:
     status = OK
     for number, experiment, folder in found:
         try:
-            redraw(number, experiment.name, folder)
+            if kind and look:
+                made = export.export(experiment, folder, results / "figures" / look, kind, look, given.get("figure"))
+            else:
+                redraw(number, experiment.name, folder)
+                made = [folder]
         except Exception as error:  # a result of another version, say; the others can still be drawn
             err.print(f"{folder} cannot be drawn, run it again: {sentence(error)}", markup=False)
             status = FAILED
         else:
-            out.print(str(folder), markup=False)
+            for path in made:
+                out.print(str(path), markup=False)
     return status
 
 

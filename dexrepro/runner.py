@@ -23,7 +23,7 @@ from dexrepro.case import live
 from dexrepro.case import run as run_case
 from dexrepro.checks import differences
 from dexrepro.errors import InputError
-from dexrepro.experiment import Config, Experiment, Metrics
+from dexrepro.experiment import Config, Experiment, Metrics, Recording
 from dexrepro.plan import PARTIAL, Job, Plan, import_anew, outdated, own_digest, presentation
 from dexrepro.pool import COMPLETES, Failure, Pool, start_method
 from dexrepro.progress import Progress, Silent
@@ -228,10 +228,11 @@ def _of_some_cases(differs: Sequence[str]) -> bool:
     return any(text.startswith(PARTIAL) for text in differs)
 
 
-def present(chapter: str, experiment: Experiment, folder: Path) -> None:
-    """Numbers over several cases, claims, tables and figures of a result folder, from its files alone."""
+def recorded(
+    experiment: Experiment, folder: Path
+) -> tuple[dict[str, Recording], dict[str, Metrics], Config, list[str]]:
+    """What a result's files hold: recordings and metrics by case, those over several cases, values, what differs."""
     from dexrepro.recordings import load_recording
-    from dexrepro.report import style
 
     run = read_json(folder / "run.json")
     config = Config.of(read_yaml(folder / "config.yaml"))
@@ -242,22 +243,30 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
             nested[first][rest[0]] = value
     if not _of_some_cases(run["differs"]):  # a number over the cases is one over all of them
         summarise(experiment, nested, config)
-    flat_metrics = flat(experiment.name, nested)
-    write_json(folder / "metrics.json", flat_metrics)
     recordings = {
         case: load_recording(folder / "series", case, entry["status"]) for case, entry in run["cases"].items()
     }
+    return recordings, nested, config, run["differs"]
+
+
+def present(chapter: str, experiment: Experiment, folder: Path) -> None:
+    """Numbers over several cases, claims, tables and figures of a result folder, from its files alone."""
+    from dexrepro.report import style
+
+    recordings, nested, config, differs = recorded(experiment, folder)
+    flat_metrics = flat(experiment.name, nested)
+    write_json(folder / "metrics.json", flat_metrics)
     claims = [claim.evaluate(flat_metrics).as_dict() for claim in chapters.load(chapter).claims_of(experiment.name)]
     write_json(folder / "claims.json", claims)
     for name in ("tables", "figures"):
         shutil.rmtree(folder / name, ignore_errors=True)
         (folder / name).mkdir()
     if tabulate := experiment.function("tabulate"):
-        with _lenient(run["differs"]):
+        with _lenient(differs):
             for identifier, table in tabulate(recordings, nested, config).items():
                 table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
     if draw := experiment.function("draw"):
-        with style.style(), _lenient(run["differs"]):
+        with style.style(), _lenient(differs):
             for identifier, figure in draw(recordings, nested, config).items():
                 style.save(figure, folder / "figures", identifier)
 
