@@ -75,9 +75,7 @@ def enlarge(figure: Figure, factor: float) -> None:
         for which in ("x", "y", "z"):
             if (axis := getattr(axes, f"{which}axis", None)) is not None and (ticks := axis.get_major_ticks()):
                 axis.labelpad *= factor
-                axes.tick_params(
-                    axis=which, pad=ticks[0].get_pad() * factor, length=ticks[0].tick1line.get_markersize()
-                )
+                axis.set_tick_params(pad=ticks[0].get_pad() * factor, length=ticks[0].tick1line.get_markersize())
 
 
 def darken(figure: Figure) -> None:
