@@ -24,7 +24,15 @@ from dexrepro.errors import InputError, nearest
 from dexrepro.keys import KEYS, SELECTION, TAKEN
 from dexrepro.plan import select
 
-FILES = ("demonstrations", "csv", "file", "path")  # keys whose values are names of files
+FILES = (
+    "demonstrations",
+    "csv",
+    "file",
+    "path",
+    "files",
+    "obstacle_files",
+    "block_file",
+)  # keys whose values are names of files
 
 
 class Selection(NamedTuple):
