@@ -114,7 +114,7 @@ COLUMNS = {
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     rows = []
-    for law in LAWS:
+    for law in (law for law in LAWS if any(f"{case}_{law}" in metrics for case in CASES)):
         row: dict[str, Any] = {"law": law.replace("_", " ")}
         for case in CASES:
             values = metrics.get(f"{case}_{law}", {})
