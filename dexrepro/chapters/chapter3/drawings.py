@@ -18,7 +18,9 @@ from dexrepro.robots.rotations import tilt
 
 def describe(config: Config) -> str:
     """One case in a few words."""
-    parts = [f"{config.task.replace('_', ' ')} task", f"mass error {100 * config.model.mass_error:g} %"]
+    error = config.model.mass_error
+    known = f"mass error {100 * error:g} %" if isinstance(error, (int, float)) else "mass errors that differ"
+    parts = [f"{config.task.replace('_', ' ')} task", known]
     if config.straight:
         parts.append("straight to the target")
     parts.append(f"K_R {config.null_space.stiffness:g} N/m" if config.null_space.enabled else "no null-space torque")
