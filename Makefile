@@ -1,10 +1,10 @@
-# make figures: run the book, render its films and build its report.  make test: all tests.  Both set up everything they
-# need, by a Python of their own choice; PYTHON=... chooses another.
+# make figures: run the book, render its films and build its report.  make test: all tests.  make docs: the manual.
+# All set up everything they need, by a Python of their own choice; PYTHON=... chooses another.
 PYTHON ?=
 BIN := .venv/bin
-EXTRAS ?= dev
+EXTRAS ?= dev,docs
 
-.PHONY: figures test check lint bench mutation wheel clean
+.PHONY: figures test check docs lint measure bench mutation wheel clean
 
 figures: .venv/ready
 	$(BIN)/dexrepro run
@@ -22,6 +22,14 @@ lint: .venv/ready
 
 check: .venv/ready
 	$(BIN)/dexrepro check
+
+# The manual, results/docs/index.html: a link to nowhere or a tutorial that fails is an error.
+docs: .venv/ready
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet docs results/docs
+
+# What the two commands take, for the README: on a machine that does nothing else.   make measure PARTS=figures
+measure: .venv/ready
+	.ci/measure $(PARTS)
 
 bench: .venv/bench
 	$(BIN)/python -m pytest tests/bench -q -s -p no:xdist -o python_files='bench_*.py'
@@ -48,4 +56,4 @@ wheel: .venv/ready
 	touch $@
 
 clean:
-	rm -rf .venv dist results/chapter* results/runs results/report results/.cache
+	rm -rf .venv dist results/chapter* results/runs results/report results/docs results/.cache

@@ -12,10 +12,12 @@ import hashlib
 import importlib.util
 import sys
 import sysconfig
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from pathlib import Path
+
+from dexrepro.kept import kept
 
 Name = tuple[str, str]
 """A module and a name in it; "" stands for all that the module holds."""
@@ -26,14 +28,33 @@ _SKIPPED = {"ctx", "type_comment", "kind", "annotation", "returns", "type_params
 
 def digest(roots: Iterable[Name]) -> str:
     """Hash of all code that the roots can reach."""
-    parts = sorted(f"{module}:{name}:{text}" for (module, name), text in _reached(roots).items())
-    return hashlib.sha1("\n".join(parts).encode()).hexdigest()
+    roots = sorted(set(roots))
+    return str(kept(f"closure {roots}", lambda: _digest(roots)))
+
+
+def _digest(roots: Sequence[Name]) -> tuple[str, set[Path] | None]:
+    """The hash, and the files and folders it follows from; None where the user's are among them, which may move."""
+    reached, files = _reached(roots), {Path(__file__)}
+    parts = sorted(f"{module}:{name}:{text}" for (module, name), text in reached.items())
+    for module in {module for module, _ in reached}:
+        if (path := _file(module)) is not None:
+            parsed = _module(module)
+            files |= {path, path.parent}
+            if parsed and parsed.data:
+                files |= {item for item in path.parent.iterdir() if item.is_file()}
+    ours = all(path.is_relative_to(Path(__file__).parent) for path in files)
+    return hashlib.sha1("\n".join(parts).encode()).hexdigest(), files if ours else None
 
 
 def sources(roots: Iterable[Name]) -> set[Path]:
     """Files that hold the code that the roots can reach."""
     found = {_file(module) for module, _ in _reached(roots)}
     return {path for path in found if path is not None}
+
+
+def reaches(roots: Iterable[Name], name: Name) -> bool:
+    """Whether the roots can reach a name."""
+    return name in _reached(roots)
 
 
 def target(text: str) -> Name:
@@ -224,7 +245,14 @@ def _file(module: str) -> Path | None:
 
 def _place(module: str) -> str | None:
     """Where a module lies: its file, or the folder of a package without one."""
-    loaded = sys.modules.get(module)
+    loaded, parent = sys.modules.get(module), module.rpartition(".")[0]
+    if (
+        loaded is None
+        and parent
+        and str(_place(parent)).endswith(".py")
+        and not str(_place(parent)).endswith("__init__.py")
+    ):
+        return None  # a name of a module, which need not be imported to say so
     try:
         spec = getattr(loaded, "__spec__", None) or importlib.util.find_spec(module)
     except (ImportError, AttributeError, ValueError):

@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 import copy
+import logging
 import math
+import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
-
-import yaml
-from hydra import compose, initialize_config_dir
-from hydra.core.config_store import ConfigStore
-from hydra.core.global_hydra import GlobalHydra
-from hydra.core.override_parser.overrides_parser import OverridesParser
-from hydra.core.override_parser.types import Override
-from hydra.errors import HydraException
-from omegaconf import OmegaConf
-from omegaconf.errors import OmegaConfBaseException
+from typing import TYPE_CHECKING, Any
 
 from dexrepro import chapters
 from dexrepro.checks import check_values, is_number, is_whole, leaves
 from dexrepro.errors import InputError, nearest
+from dexrepro.kept import kept
+from dexrepro.physics.engine import ENGINES, is_installed
 
-SETTINGS = ("only", "case", "figure", "seed", "results", "workers", "case_timeout", "force", "quiet", "gui")
+if TYPE_CHECKING:  # Hydra is imported where it is needed: it takes as long as a whole command may
+    from hydra.core.override_parser.types import Override
+
+SETTINGS = ("only", "case", "figure", "seed", "engine", "results", "workers", "case_timeout", "force", "quiet", "gui")
 
 
 def config_dir() -> Path:
@@ -57,15 +54,20 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         )
     raw = as_written(chapter)
     shipped = inherited(raw)
+    if not extra_dir and (settings := _plain_settings(overrides)) is not None:
+        check_settings(shipped | settings)
+        return shipped | settings
+    import yaml
+    from hydra.errors import HydraException
+    from omegaconf.errors import OmegaConfBaseException
+
     search = [f"hydra.searchpath=[{in_quotes(f'file://{Path(extra_dir).resolve()}')}]"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
     try:
         if added:
-            raw = _compose([f"chapter='{chapter}'", *added, *search])
+            raw = _compose(chapter, [*added, *search])
         check_overrides(overrides, inherited(raw))
-        if not overrides and not extra_dir:
-            return shipped
-        composed = inherited(_compose([f"chapter='{chapter}'", *forced(overrides, raw), *search]))
+        composed = inherited(_compose(chapter, [*forced(overrides, raw), *search]))
     except (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, TypeError) as error:
         raise InputError(" ".join(str(error.__cause__ or error).split())) from error
     if unknown := [key for key in composed if key not in shipped]:
@@ -79,7 +81,24 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
     return composed
 
 
+_SETTING = re.compile(r"(\w+)=(?:'([\w./-]+)'|(0|[1-9]\d{0,17})|([A-Za-z_]\w*))")
+_WORDS = {"true": True, "false": False, "null": None}
+
+
+def _plain_settings(overrides: Sequence[str]) -> dict[str, Any] | None:
+    """What overrides say that are settings with plain words and whole numbers; None where Hydra has to read them."""
+    found: dict[str, Any] = {}
+    for text in overrides:
+        match = _SETTING.fullmatch(text)
+        if not match or match[1] not in SETTINGS or str(match[4]).lower() in ("nan", "inf"):
+            return None
+        word = match[4] and _WORDS.get(match[4].lower(), match[4])
+        found[match[1]] = match[2] or (int(match[3]) if match[3] else word)
+    return found
+
+
 INHERITS = "inherits"
+log = logging.getLogger(__name__)
 
 
 def inherited(composed: Mapping[str, Any]) -> dict[str, Any]:
@@ -146,7 +165,6 @@ def forced(overrides: Sequence[str], raw: Mapping[str, Any]) -> list[str]:
 
 def as_written(chapter: str) -> dict[str, Any]:
     """The shipped configuration of a chapter as its files have it, inheritance not filled in."""
-    _offer(chapter)
     return _shipped(str(config_dir()), chapter, _changed(chapter))
 
 
@@ -165,6 +183,10 @@ def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
 
 def read_config(path: Path) -> dict[str, Any]:
     """The content of a configuration file. Raises InputError that names the file, and the line that is wrong."""
+    import yaml
+    from omegaconf import OmegaConf
+    from omegaconf.errors import OmegaConfBaseException
+
     try:
         content: Any = OmegaConf.to_container(OmegaConf.create(path.read_text("utf-8")), resolve=False)
     except AssertionError:
@@ -176,10 +198,13 @@ def read_config(path: Path) -> dict[str, Any]:
     return content
 
 
-def _offer(chapter: str) -> None:
+def offer(chapter: str) -> None:
     """Let Hydra find the configuration of a chapter outside the package."""
     if chapter == chapters.OWN or not chapters.is_added(chapter):
         return
+    from hydra.core.config_store import ConfigStore
+    from omegaconf import OmegaConf
+
     for name, path in config_files(chapter).items():
         node = OmegaConf.create({name: read_config(path)})
         ConfigStore.instance().store(f"{name}.yaml", node, group=f"chapter/{chapter}", package="_global_")
@@ -194,18 +219,33 @@ def _changed(chapter: str) -> float:
 @lru_cache(maxsize=16)
 def _shipped(folder: str, chapter: str, changed: float) -> dict[str, Any]:
     """The configuration without overrides; composing takes a while, so it is kept until the files change."""
-    return _compose([f"chapter='{chapter}'"])
+
+    def composed() -> tuple[dict[str, Any], list[Path]]:
+        files = config_files(chapter).values()
+        folders = {path.parent for path in files} | {config_dir(), config_dir() / "chapter"}
+        log.info("composed chapter %s from %d files of %s", chapter, len(files), next(iter(folders)))
+        return _compose(chapter), [Path(__file__), *files, *folders, *config_dir().rglob("*.yaml")]
+
+    return dict(kept(f"chapter {chapter} of {folder}, {os.environ.get(chapters.ADDED)}", composed))
 
 
-def _compose(overrides: list[str]) -> dict[str, Any]:
+def _compose(chapter: str, overrides: Sequence[str] = ()) -> dict[str, Any]:
+    from hydra import compose, initialize_config_dir
+    from hydra.core.global_hydra import GlobalHydra
+    from omegaconf import OmegaConf
+
+    offer(chapter)
     GlobalHydra.instance().clear()
     with initialize_config_dir(str(config_dir().resolve()), version_base="1.3"):
-        config = compose("config", overrides=overrides)
+        config = compose("config", overrides=[f"chapter='{chapter}'", *overrides])
     return OmegaConf.to_container(config, resolve=False)  # type: ignore[return-value]
 
 
 def parsed(text: str) -> Override | None:
     """What Hydra's grammar makes of a word, None where it is none of its overrides."""
+    from hydra.core.override_parser.overrides_parser import OverridesParser
+    from hydra.errors import HydraException
+
     try:
         return OverridesParser.create().parse_override(text)
     except HydraException:
@@ -256,12 +296,24 @@ def check_settings(composed: Mapping[str, Any]) -> None:
     scene = composed.get("scene")
     if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]*", name := str(scene.get("name"))):
         raise InputError(f"scene.name = {name} is not allowed: it names a folder; use letters, digits, '_' and '-'")
+    check_engine(composed["engine"])
     timeout = composed["case_timeout"]
     if timeout is not None and not (is_number(timeout) and 0 < timeout < math.inf):
         raise InputError(f"case_timeout = {timeout} is not allowed: it must be a number of seconds greater than 0")
     for key in ("force", "quiet", "gui"):
         if not isinstance(composed[key], bool):
             raise InputError(f"{key} = {composed[key]} is not allowed: it must be true or false")
+
+
+def check_engine(engine: Any) -> None:
+    """Refuse an engine that there is not, or not here."""
+    words = [engine] if engine is not None else list(ENGINES)
+    if not all(isinstance(word, str) and word in ENGINES for word in words):
+        raise InputError(f"engine = {engine} is not allowed: it must be one of {', '.join(ENGINES)}")
+    if not any(map(is_installed, words)):
+        raise InputError(
+            f"engine = {words[0]} needs {ENGINES[words[0]]}, which is not installed here: pip install {words[-1]}"
+        )
 
 
 def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, dict[str, Any]]:
@@ -364,6 +416,9 @@ def _resolve(names: Mapping[str, Any], experiment: str, block: Mapping[str, Any]
         return _looked_up(block, names, ())
     except _NotPlainError:
         pass
+    from omegaconf import OmegaConf
+    from omegaconf.errors import OmegaConfBaseException
+
     config = OmegaConf.create(names)
     try:
         return OmegaConf.to_container(config[experiment], resolve=True)  # type: ignore[return-value]

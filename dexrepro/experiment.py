@@ -17,10 +17,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-
 if TYPE_CHECKING:
     import matplotlib.figure
+    import numpy as np
     import pandas as pd
     from numpy.typing import NDArray
 
@@ -105,7 +104,7 @@ Drawings: TypeAlias = "dict[str, matplotlib.figure.Figure]"  # by the number of 
 class Figure:
     """What surrounds a figure: caption (what was simulated, what the book shows) and one-sentence alternative text.
 
-    Numbers of a run stand in them as in a claim's note, ``{experiment.case.metric:.3g}``.
+    ``{experiment.case.metric:.3g}`` in them is filled from the result, ``{experiment.key}`` from its configuration.
     """
 
     caption: str

@@ -24,10 +24,12 @@ from dexrepro.checks import check_lengths, check_types, check_words, differences
 from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block
 from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Experiment
+from dexrepro.physics.engine import REFERENCE, default
 from dexrepro.provenance import words_of
 from dexrepro.storage import digest_of
 
-NUMERICAL = ("numpy", "scipy", "pybullet")  # packages whose version can change a number
+NUMERICAL = ("numpy", "scipy")  # packages whose version can change a number, beside the engine
+ENGINE = "dexrepro.physics.engine", "engine"  # what every scene and model is made by
 PARTIAL = "case="  # begins the word by which a result of some cases differs from the whole one
 
 
@@ -64,7 +66,15 @@ class Plan:
     jobs: list[Job]
     folder: Path
     seed: int
+    engine: str
     differs: list[str] = field(default_factory=list)
+
+    @property
+    def versions(self) -> dict[str, str]:
+        """Packages whose version can change a number of it, with their versions."""
+        experiment = chapters.load(self.chapter).experiment(self.experiment)
+        engine = [self.engine] if uses_engine(experiment) else []
+        return {name: version(name) for name in (*NUMERICAL, *engine, *experiment.requires)}
 
     @property
     def contents(self) -> dict[str, str]:
@@ -113,7 +123,7 @@ def _of_cases(plans: list[Plan], wanted: str | Sequence[str] | None) -> list[Pla
     """The plans for some of their cases, by name or pattern: a result of its own, which stands for no whole one."""
     if wanted is None:
         return plans
-    patterns = [wanted] if isinstance(wanted, str) else list(map(str, wanted))
+    patterns = [str(name) for name in (wanted if isinstance(wanted, list) else [wanted])]
     names = [job.case for plan in plans for job in plan.jobs]
     for pattern in patterns:
         if not fnmatch.filter(names, pattern):
@@ -162,21 +172,24 @@ def _plan(
     differs = [] if _as_shipped(config, shipped) else _differs(name, config, shipped, cases, block)
     for values in cases.values() if differs else ():
         check_words(values, words_of(chapter, name), name)
+    experiment, engine = chapters.load(chapter).experiment(name), str(config["engine"] or default())
+    told = {"engine": engine} if uses_engine(experiment) and engine != REFERENCE else {}
+    if engine != default() and uses_engine(experiment):
+        differs.append(f"engine={engine}")
     folder = results / f"chapter{chapter}" / name
     if differs:
         label = block["name"] if chapter == chapters.OWN else name
-        folder = results / "runs" / f"{label}-{digest_of([cases, seed])[:10]}"
-    experiment = chapters.load(chapter).experiment(name)
-    versions = [version(package) for package in (*NUMERICAL, *experiment.requires)]
-    jobs = []
+        folder = results / "runs" / f"{label}-{digest_of([cases, seed, *told.values()])[:10]}"
+    plan = Plan(chapter, name, block, [], folder, seed, engine, differs)
+    versions = list(plan.versions.values())
     for case, values in cases.items():
-        values = {**values, "perturbation": perturbation, "seed": seed, "case": case}
+        values = {**values, "perturbation": perturbation, "seed": seed, "case": case, **told}
         own = own_digest(values)
         content = content_of(experiment, values, own)
         cached = results / ".cache" / name / f"{case}-{digest_of([content, versions])[:16]}"
-        jobs.append(Job(chapter, name, case, values, seed, content, own, str(cached), bool(config["gui"]),
-                        config["case_timeout"]))  # fmt: skip
-    return Plan(chapter, name, block, jobs, folder, seed, differs)
+        plan.jobs.append(Job(chapter, name, case, values, seed, content, own, str(cached), bool(config["gui"]),
+                             config["case_timeout"]))  # fmt: skip
+    return plan
 
 
 def _as_shipped(config: Mapping[str, Any], shipped: Mapping[str, Any]) -> bool:
@@ -216,7 +229,7 @@ def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[
     experiments = chapters.load(chapter).experiments
     names = [experiment.name for experiment in experiments]
     wanted = names if only is None else [only] if isinstance(only, str) else list(only)
-    everywhere = {e.name for number in chapters.numbers() for e in chapters.load(number).experiments}
+    everywhere = {name for number in chapters.numbers() for name in chapters.names(number)}
     for name in wanted:
         if name not in names and (name not in everywhere or not set(wanted) & set(names)):
             raise InputError(f"unknown experiment '{name}' in chapter {chapter}: {nearest(str(name), names)}")
@@ -256,14 +269,23 @@ def content_of(experiment: Experiment, values: Mapping[str, Any], own: str | Non
 
 def code_digest(experiment: Experiment, values: Mapping[str, Any]) -> str:
     """Hash of the code of this package that a case uses: its simulation and the laws that its values name."""
-    return _code_digest(experiment.package, frozenset(text for text in targets(values) if text.startswith("dexrepro.")))
+    named = frozenset(text for text in targets(values) if text.startswith("dexrepro."))
+    return _code_digest(experiment.package, named, values.get("engine", REFERENCE))
 
 
 @lru_cache(maxsize=256)  # emptied before each planning: a session may edit files
-def _code_digest(package: str, named: frozenset[str]) -> str:
+def _code_digest(package: str, named: frozenset[str], engine: str) -> str:
     roots = [(f"{package}.experiment", name) for name in ("simulate", "measure", "RATE")]
     roots += [("dexrepro.case", "run"), ("dexrepro.case", "live"), ("dexrepro.recordings", "save_recording")]
-    return closure.digest([*roots, *(closure.target(text) for text in named)])
+    roots += map(closure.target, named)
+    engines = [(f"dexrepro.physics.engines.{engine}", "")] if closure.reaches(roots, ENGINE) else []
+    return closure.digest([*roots, *engines])
+
+
+@lru_cache(maxsize=256)
+def uses_engine(experiment: Experiment) -> bool:
+    """Whether an experiment simulates arms."""
+    return closure.reaches([(f"{experiment.package}.experiment", name) for name in ("simulate", "measure")], ENGINE)
 
 
 def presentation(experiment: Experiment) -> str:

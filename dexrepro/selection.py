@@ -9,11 +9,30 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dexrepro import chapters
-from dexrepro.config import as_written, check_overrides, compose_chapter, forced, in_quotes, own_keys, parsed
+from dexrepro.config import (
+    SETTINGS,
+    as_written,
+    check_overrides,
+    compose_chapter,
+    forced,
+    in_quotes,
+    offer,
+    own_keys,
+    parsed,
+)
 from dexrepro.errors import InputError, nearest
+from dexrepro.keys import KEYS, SELECTION, TAKEN
 from dexrepro.plan import select
 
-FILES = ("demonstrations", "csv", "file", "path")  # keys whose values are names of files
+FILES = (
+    "demonstrations",
+    "csv",
+    "file",
+    "path",
+    "files",
+    "obstacle_files",
+    "block_file",
+)  # keys whose values are names of files
 
 
 class Selection(NamedTuple):
@@ -27,15 +46,14 @@ class Selection(NamedTuple):
     extra: dict[str, str]
 
 
-def selected(words: Iterable[str], extra: Sequence[str] = ()) -> Selection:
-    """What the words ``key=value`` of a command select; ``extra``: keys that it knows beside the common ones."""
-    overrides = list(words)
+def selected(words: Iterable[str], command: str) -> Selection:
+    """What the words ``key=value`` of a command select."""
+    overrides = [re.sub("^cases=", "case=", text) for text in words]
     for text in overrides:
-        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers", *extra):
-            more = "".join(f", {key}=" for key in extra)
-            raise InputError(
-                f"'{text}' has no meaning here; there are: chapter=N, only=EXPERIMENT, figure=ID, results=DIR{more}"
-            )
+        if text.partition("=")[0] not in TAKEN[command]:
+            known = ", ".join(f"{key}={KEYS[key][0]}" for key in TAKEN[command])
+            raise InputError(f"'{text}' has no meaning here; there are: {known}")
+    extra = [key for key in TAKEN[command] if key not in (*SELECTION, "workers")]
     values = dict(text.partition("=")[::2] for text in overrides)
     numbers, _ = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
     only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]
@@ -82,7 +100,7 @@ def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[s
         if number not in chapters.numbers():
             raise InputError(f"unknown figure '{figure}': no chapter {number}")
         return [number]
-    owner = {e.name: number for number in chapters.numbers() for e in chapters.load(number).experiments}
+    owner = {name: number for number in chapters.numbers() for name in chapters.names(number)}
     only = values.get("only", "null").strip("'\"[]")
     named = [] if only == "null" else [name.strip("'\" ") for name in only.split(",")]
     for name in named:
@@ -97,7 +115,7 @@ def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[s
 
 def of_chapter(number: str, numbers: Sequence[str], overrides: Sequence[str]) -> list[str]:
     """The overrides for one of several chapters: ``only=a,b`` as a list without the experiments of the others."""
-    others = {e.name for other in numbers if other != number for e in chapters.load(other).experiments}
+    others = {name for other in numbers if other != number for name in chapters.names(other)}
     result = []
     for text in overrides:
         key, _, value = text.partition("=")
@@ -114,6 +132,8 @@ def for_hydra(arguments: Sequence[str], overrides: Sequence[str], extra_dir: str
     Raises InputError for what no job could use, before Hydra starts any.
     """
     numbers, rest = chapters_of(overrides, extra_dir)
+    for number in numbers:
+        offer(number)
     if extra_dir is None:  # what its files add is known to Hydra alone
         check_overrides(rest, {key: value for number in numbers for key, value in compose_chapter(number).items()})
     named = any(re.match(r"chapter=|figure=.*,", text) for text in overrides)
@@ -131,6 +151,8 @@ def quoted(argument: str) -> str:
         values = match[2].split(",")
         return argument if match[2] == "null" else f"{match[1]}=" + ",".join(f"'{value}'" for value in values)
     key, mark, value = argument.partition("=")
+    if key in SETTINGS and key != "results" and re.fullmatch(r"[A-Za-z0-9_]+", value):
+        return argument  # a plain word or number, for which Hydra's grammar need not be loaded
     if key in ("case", "cases") and mark:
         key, argument = "case", f"case=[{value}]" if "," in value and value[0] not in "['\"" else f"case={value}"
     if not mark or not value or key.startswith("-"):

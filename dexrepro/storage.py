@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import hashlib
+import html
 import json
 import math
 import os
@@ -12,15 +14,16 @@ import shutil
 import uuid
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 import yaml
 from filelock import FileLock, Timeout
 
-from dexrepro.experiment import Recording
-from dexrepro.recordings import load_recording, read_frame
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from dexrepro.experiment import Recording
 
 _PART = re.compile(r"\.(?P<target>.+)-[0-9a-f]{12}\.part")
 
@@ -216,10 +219,14 @@ class Result:
 
     def recording(self, case: str) -> Recording:
         """Series, frames and images of one case, at the rate kept on disk."""
+        from dexrepro.recordings import load_recording
+
         return load_recording(self.folder / "series", case, self.run["cases"][case]["status"])
 
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
+        from dexrepro.recordings import read_frame
+
         return {path.stem: read_frame(path) for path in sorted((self.folder / "tables").glob("*.csv"))}
 
     @property
@@ -228,3 +235,28 @@ class Result:
 
     def __repr__(self) -> str:
         return f"Result({str(self.folder)!r}, {len(self.metrics)} metrics, {len(self.claims)} claims)"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the claims with their verdicts, and the figures."""
+        cells = [(c["id"], c["statement"], c["verdict"], _short(c["margin"]), c["note"]) for c in self.claims]
+        head = "".join(f"<th>{name}</th>" for name in ("claim", "statement", "verdict", "margin", "note"))
+        rows = ("".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row) for row in cells)
+        table = f"<table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>" if cells else ""
+        differs = f"<p>differs from the book in: {html.escape(', '.join(self.run['differs']))}</p>"
+        images = (
+            f'<img alt="{name}" style="max-width:100%" src="data:image/png;base64,'
+            f'{base64.b64encode(path.read_bytes()).decode()}">' for name, path in self.figures.items()
+        )  # fmt: skip
+        folder = html.escape(str(self.folder))
+        return f"<h4>{folder}</h4>{differs if self.run.get('differs') else ''}{table}{''.join(images)}"
+
+
+class Results(dict[str, Result]):
+    """Results by experiment."""
+
+    def _repr_html_(self) -> str:
+        return "".join(result._repr_html_() for result in self.values())
+
+
+def _short(number: float | None) -> str:
+    return "" if number is None else f"{number:.3g}"

@@ -12,11 +12,13 @@ shares the results folder: its processes share the samples.
 
 from __future__ import annotations
 
+import fnmatch
 import gzip
 import json
 import re
 import time
 import zlib
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
@@ -24,9 +26,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import stats
 
-from dexrepro import baselines, chapters
+from dexrepro import baselines, chapters, crosscheck
 from dexrepro.arrays import Array
 from dexrepro.baselines import baseline_dir
 from dexrepro.case import live
@@ -36,12 +37,15 @@ from dexrepro.claims import LOOKS, OPEN, Claim, robustness
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Metrics
-from dexrepro.measures import binomial_interval
-from dexrepro.plan import content_of
+from dexrepro.physics import engine as physics
+from dexrepro.physics.engine import REFERENCE
+from dexrepro.plan import content_of, uses_engine
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.provenance import Provenance, provenance
 from dexrepro.runner import flat, summarise
-from dexrepro.storage import claimed, finite, locked, read_json, write_json, write_text
+from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
+
+Cases = tuple[str, ...]
 
 
 class SamplesFailed(Exception):
@@ -60,6 +64,21 @@ def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list
     if claim not in by_id:
         raise InputError(f"unknown claim '{claim}' in chapter {chapter}: {nearest(claim, by_id)}")
     return [by_id[claim].experiment]
+
+
+def cases_of(chapter: str, experiment: str, wanted: str) -> Cases:
+    """The cases that names and patterns parted by commas mean. Raises InputError where one means none, or no claim is
+    about them alone."""
+    names = list(draw(chapter, experiment, 0)[1]["cases"])
+    for pattern in wanted.split(","):
+        if not fnmatch.filter(names, pattern):
+            raise InputError(f"unknown case '{pattern}' of {experiment}: {nearest(pattern, names)}")
+    chosen = tuple(name for name in names if any(fnmatch.fnmatchcase(name, p) for p in wanted.split(",")))
+    predicates = [claim.predicate for claim in chapters.load(chapter).claims_of(experiment) if claim.predicate]
+    about = [{name.split(".")[1] if name.count(".") > 1 else "" for name in found.metrics} for found in predicates]
+    if not any(cases <= set(chosen) for cases in about):
+        raise InputError(f"case = {wanted} is not allowed: no claim of {experiment} is about these cases alone")
+    return chosen
 
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the margin, in a summary
@@ -99,7 +118,9 @@ def _references(composed: Mapping[str, Any], node: Any) -> set[str]:
 @cache
 def _points(experiment: str, dimensions: int) -> Array:
     """Scrambled Sobol points in the unit cube, one a sample."""
-    return stats.qmc.Sobol(max(dimensions, 1), seed=zlib.crc32(experiment.encode())).random(1024)
+    from scipy.stats import qmc
+
+    return qmc.Sobol(max(dimensions, 1), seed=zlib.crc32(experiment.encode())).random(1024)
 
 
 def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float | str], dict[str, Any]]:
@@ -127,17 +148,26 @@ def within(share: float, low: float, high: float, whole: bool = False) -> float:
     return round(value) if whole else float(f"{value:.6g}")
 
 
-def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]) -> dict[str, Any]:
+def evaluate(
+    chapter: str,
+    experiment: str,
+    index: int,
+    known: Mapping[str, Any],
+    engine: str = REFERENCE,
+    only: Cases = (),
+) -> dict[str, Any]:
     """One sample: what was drawn and, of every case that a claim is about, the key of its simulation and its metrics.
 
-    known: cases that were run before, by the key of their simulation; they are taken over.
+    known: cases that were run before, by the key of their simulation; they are taken over. engine: of the simulations;
+    a sample says which it was, where it is not that of the baselines. only: some of the cases.
     """
+    physics.use(engine)
     values, block = draw(chapter, experiment, index)
     seed = int(values["seed"])
     loaded = chapters.load(chapter)
     definition, cases = loaded.experiment(experiment), {}
-    for case in _cases_of(loaded.claims_of(experiment), block["cases"]):
-        config = {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case}
+    for case in _cases_of(loaded.claims_of(experiment), block["cases"], only):
+        config = _values(block, case, seed, engine)
         content = content_of(definition, config)
         if content in known:
             cases[case] = known[content]
@@ -148,23 +178,36 @@ def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]
         except Exception as problem:
             found = {"error": f"{type(problem).__name__}: {' '.join(str(problem).split())}"}
         cases[case] = {"content": content, **found, "seconds": round(time.perf_counter() - start, 3)}
-    return {"index": index, "values": values, "cases": cases}
+    return {"index": index, "values": values, "cases": cases, **_told(engine)}
 
 
-def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any]) -> bool:
-    """Whether a stored sample has every case that the claims are about, under its present simulation."""
-    contents = _contents(chapter, experiment, entry["index"])
+def _values(block: Mapping[str, Any], case: str, seed: int, engine: str) -> dict[str, Any]:
+    return {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case, **_told(engine)}
+
+
+def _told(engine: str) -> dict[str, str]:
+    return {} if engine == REFERENCE else {"engine": engine}
+
+
+def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any], results: Path, only: Cases = ()) -> bool:
+    """Whether a stored sample has every case that the claims are about, under its present simulation.
+
+    One of another engine counts as long as the cross-check shows that it decides every claim alike.
+    """
+    if "engine" in entry and not crosscheck.agrees_on(experiment, results):
+        return False
+    contents = _contents(chapter, experiment, entry, only)
     return all(entry["cases"].get(case, {}).get("content") == content for case, content in contents.items())
 
 
-def _contents(chapter: str, experiment: str, index: int) -> dict[str, str]:
+def _contents(chapter: str, experiment: str, entry: Mapping[str, Any], only: Cases = ()) -> dict[str, str]:
     """The key of the present simulation of every case that a claim is about, in one sample."""
-    values, block = draw(chapter, experiment, index)
+    values, block = draw(chapter, experiment, entry["index"])
     loaded, seed = chapters.load(chapter), int(values["seed"])
     definition = loaded.experiment(experiment)
     return {
-        case: content_of(definition, {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case})
-        for case in _cases_of(loaded.claims_of(experiment), block["cases"])
+        case: content_of(definition, _values(block, case, seed, entry.get("engine", REFERENCE)))
+        for case in _cases_of(loaded.claims_of(experiment), block["cases"], only)
     }
 
 
@@ -180,10 +223,13 @@ def confirm(chapter: str, experiment: str, results: Path, update: bool = False) 
     old = [
         entry
         for entry in entries.values()
-        if not _is_present(chapter, experiment, entry)
+        if not _is_present(chapter, experiment, entry, results)
         and entry["values"] == draw(chapter, experiment, entry["index"])[0]
     ]
-    again = {entry["index"]: evaluate(chapter, experiment, entry["index"], {}) for entry in old[:1] + old[-1:]}
+    again = {
+        entry["index"]: evaluate(chapter, experiment, entry["index"], {}, entry.get("engine", REFERENCE))
+        for entry in old[:1] + old[-1:]
+    }
     known = baselines.stored(chapter)[experiment].metrics
     ran = {case for sample in again.values() for case in sample["cases"]}
     same = {
@@ -196,7 +242,7 @@ def confirm(chapter: str, experiment: str, results: Path, update: bool = False) 
     }
     carried = 0
     for entry in old:
-        for case, content in _contents(chapter, experiment, entry["index"]).items():
+        for case, content in _contents(chapter, experiment, entry).items():
             if case in same and case in entry["cases"] and entry["cases"][case]["content"] != content:
                 entry["cases"][case]["content"] = content
                 carried += 1
@@ -232,8 +278,10 @@ def _rounded(numbers: Mapping[str, float | None]) -> dict[str, float | None]:
     return {key: value if value is None else float(f"{value:.6g}") for key, value in numbers.items()}
 
 
-def _cases_of(claims: Sequence[Claim], cases: Mapping[str, Any]) -> list[str]:
-    """The cases that the claims are about: all as soon as a claim needs a number over several cases."""
+def _cases_of(claims: Sequence[Claim], cases: Mapping[str, Any], only: Cases = ()) -> list[str]:
+    """The cases that the claims are about, all as soon as a claim needs a number over several; of them only some."""
+    if only:
+        return [case for case in cases if case in only]
     parts = [name.split(".") for claim in claims for name in claim.metrics]
     if any(len(part) < 3 for part in parts):
         return list(cases)
@@ -249,27 +297,40 @@ def run(
     workers: int | None = None,
     hours: float | None = None,
     update: bool = False,
+    engine: str = REFERENCE,
+    only: Cases = (),
 ) -> Path:
     """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path.
 
-    samples: None takes as many as decide every claim, 100 at most. ``update`` renews the study that is shipped. Raises
-    InputError where a summary of more samples, of another configuration, would be replaced, and SamplesFailed, at the
-    end, where a sample could not be made.
+    samples: None takes as many as decide every claim, 100 at most. ``update`` renews the study that is shipped. engine:
+    of the samples made now. only: run these cases alone, for the claims about no other, with a summary of their own.
+    Raises InputError where a summary of more samples, of another configuration, would be replaced, or where the engine
+    is not known to decide every claim as that of the baselines does, and SamplesFailed, at the end, where a sample
+    could not be made.
     """
+    if not uses_engine(chapters.load(chapter).experiment(experiment)):
+        engine = REFERENCE
+    if engine != REFERENCE and not crosscheck.agrees_on(experiment, results):
+        raise InputError(
+            f"engine = {engine} is not allowed for a study of {experiment}: its claims are not known to have the same "
+            f"verdicts under both engines; ask: dexrepro crosscheck chapter={chapter} only={experiment}"
+        )
     target = summary_file(experiment, results, update)
+    if only:
+        target = _folder(results) / "cases" / f"{experiment}-{digest_of([*only])[:10]}.json"
     for folder in (target.parent, _folder(results)):
         folder.mkdir(parents=True, exist_ok=True)
     if samples is not None:
         _refuse_fewer(chapter, experiment, samples, results, target)
     deadline = time.time() + 3600 * hours if hours else float("inf")
     for look in [samples] if samples is not None else LOOKS:
-        done = _kept(chapter, experiment, results)
+        done = _kept(chapter, experiment, results, only=only)
         with Pool(workers) as pool:
             for index in (index for index in range(look) if index not in done):
-                pool.add(index, contribute, chapter, experiment, index, results, deadline)
+                pool.add(index, contribute, chapter, experiment, index, results, deadline, engine, only)
             failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
         with locked(_folder(results)):  # who ends last sees every sample
-            entries = list(_kept(chapter, experiment, results).values())
+            entries = list(_kept(chapter, experiment, results, only=only).values())
             found = summary(chapter, experiment, entries)
             if len(entries) >= _held(target):  # fewer where the hours are over
                 _write_lines(_lines(target), entries)
@@ -293,10 +354,18 @@ def _refuse_fewer(chapter: str, experiment: str, samples: int, results: Path, ta
         )
 
 
-def contribute(chapter: str, experiment: str, index: int, results: Path, deadline: float) -> None:
+def contribute(
+    chapter: str,
+    experiment: str,
+    index: int,
+    results: Path,
+    deadline: float,
+    engine: str = REFERENCE,
+    only: Cases = (),
+) -> None:
     """Evaluate one sample and add its line, unless another process does or has done so, or it is too late."""
     with claimed(_folder(results), f"{experiment}.{index}", wait=False) as mine:
-        if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index):
+        if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index, only):
             return
         known = {
             row["content"]: row
@@ -304,25 +373,33 @@ def contribute(chapter: str, experiment: str, index: int, results: Path, deadlin
             if entry["index"] == index
             for row in entry["cases"].values()
         }
-        line = _line(evaluate(chapter, experiment, index, known))
+        line = _line(evaluate(chapter, experiment, index, known, engine, only))
         with locked(_folder(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
             file.seek(max(file.tell() - 1, 0))
             cut_short = file.read(1) not in (b"", b"\n")
             file.write(b"\n" * cut_short + line.encode())
 
 
-def _kept(chapter: str, experiment: str, results: Path, only: int | None = None) -> dict[int, dict[str, Any]]:
+def _kept(
+    chapter: str, experiment: str, results: Path, number: int | None = None, only: Cases = ()
+) -> dict[int, dict[str, Any]]:
     """The samples there are, shipped or made here, of the present simulations, in the order of index."""
     found = {}
     for entry in _all(experiment, results):
-        if only in (None, entry["index"]) and _is_present(chapter, experiment, entry):
-            found[entry["index"]] = {**entry, "values": draw(chapter, experiment, entry["index"])[0]}
+        if number in (None, entry["index"]) and _is_present(chapter, experiment, entry, results, only):
+            cases = {case: row for case, row in entry["cases"].items() if not only or case in only}
+            found[entry["index"]] = {**entry, "values": draw(chapter, experiment, entry["index"])[0], "cases": cases}
     return dict(sorted(found.items()))
 
 
 def _all(experiment: str, results: Path) -> Iterator[dict[str, Any]]:
     for update in (True, False):
         yield from _read(_lines(summary_file(experiment, results, update)))
+
+
+def shipped_samples(experiment: str) -> list[dict[str, Any]]:
+    """The samples that are shipped, whatever simulation made them."""
+    return list(_read(_lines(summary_file(experiment, Path(), shipped=True))))
 
 
 def _folder(results: Path) -> Path:
@@ -365,6 +442,8 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
 
     Only samples count whose cases all ran; "undefined" says in how many a metric was undefined, where the claim fails.
     """
+    from dexrepro.measures import binomial_interval
+
     claims: dict[str, Any] = {}
     origins = parameters(chapter, experiment)
     sampled = [(metrics_of(chapter, experiment, entry), _numeric(entry["values"], origins)) for entry in entries]
@@ -391,11 +470,13 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
             "quantiles": np.quantile(margins, QUANTILES).tolist(), "least": float(margins.min()),
             "boundary": _boundary(parameter, pairs),
         }  # fmt: skip
+    engines = dict(sorted(Counter(entry.get("engine", REFERENCE) for entry in entries).items()))
     failed = sum(any("error" in row for row in entry["cases"].values()) for entry in entries)
     varied = {key: list(o.words) if o.drawn else [o.low, o.high] for key, o in origins.items()}
     seconds = sum(row.get("seconds", 0.0) for entry in entries for row in entry["cases"].values())
     return {"chapter": chapter, "experiment": experiment, "samples": len(entries), "failed": failed,
-            "seconds": round(seconds, 1), "varied": varied, "claims": claims}  # fmt: skip
+            "seconds": round(seconds, 1), "varied": varied, "claims": claims,
+            **({"engines": engines} if set(engines) - {REFERENCE} else {})}  # fmt: skip
 
 
 def _numeric(values: Mapping[str, float | str], origins: Mapping[str, Provenance]) -> dict[str, float]:
@@ -472,7 +553,9 @@ def _most_influential(margins: Array, values: Sequence[Mapping[str, float]]) -> 
 
 
 def _standard_ranks(rows: Array) -> Array:
-    ranks = stats.rankdata(rows, axis=1)
+    from scipy.stats import rankdata
+
+    ranks = rankdata(rows, axis=1)
     return (ranks - ranks.mean(axis=1, keepdims=True)) / ranks.std(axis=1, keepdims=True)
 
 

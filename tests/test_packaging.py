@@ -22,7 +22,7 @@ def tool(*command: str) -> subprocess.CompletedProcess[str]:
 
 
 def requirements(lines: list[str]) -> dict[str, str]:
-    found = (re.fullmatch(r"([\w.-]+?)(-base)? ?(>=.*)?", line) for line in lines)
+    found = (re.fullmatch(r"([\w.-]+?)(-base|-python)? ?(>=[^;]*)?(;.*)?", line) for line in lines)
     return {match[1].lower(): match[3] or "" for match in found if match}
 
 
@@ -38,7 +38,8 @@ def test_every_dependency_is_pinned_and_in_the_conda_environment() -> None:
     assert {name: conda.get(name) for name in needed} == needed
     pins = dict(line.split("==") for line in (ROOT / ".ci/constraints.txt").read_text().split())
     pinned = {name.lower().replace("_", "-") for name in pins}
-    assert {*needed, *requirements(PROJECT["optional-dependencies"]["dev"])} <= pinned
+    extras = [line for extra in ("dev", "docs") for line in PROJECT["optional-dependencies"][extra]]
+    assert {*needed, *requirements(extras)} <= pinned
 
 
 def test_the_container_is_as_the_linter_wants_it() -> None:

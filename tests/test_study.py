@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
+from scipy import stats
 
 from dexrepro import study
-from dexrepro.claims import Claim, less
+from dexrepro.claims import LOOKS, Claim, less, robustness
 from dexrepro.errors import InputError
 from dexrepro.pool import Pool
 from dexrepro.storage import read_json
@@ -50,6 +51,23 @@ def test_only_the_cases_of_claims_are_run(folder: Path, monkeypatch: pytest.Monk
     assert study._cases_of(claims, cases) == ["plain", "fast", "gain1", "gain2"]
     over_all = Claim("C90.09", "90.10", "a number over several cases", less("decay.ratio", 9))
     assert study._cases_of([*claims, over_all], cases) == list(cases)
+
+
+def test_some_cases_are_studied_for_the_claims_about_no_other(folder: Path) -> None:
+    cases = study.cases_of("90", "decay", "gain*")
+    assert cases == ("gain1", "gain2")
+    path = study.run("90", "decay", 2, RESULTS, workers=1, only=cases)
+    assert path.parent.name == "cases"
+    assert not study.summary_file("decay", RESULTS).exists(), "it stands for no whole study"
+    about = [c.id for c in study.chapters.load("90").claims_of("decay") if all(".gain" in n for n in c.metrics)]
+    assert sorted(read_json(path)["claims"]) == sorted(about) != []
+    whole = read_json(study.run("90", "decay", 2, RESULTS, workers=1))
+    assert set(whole["claims"]) > set(about)
+    assert whole["samples"] == 2
+    with pytest.raises(InputError, match="unknown case 'gone'"):
+        study.cases_of("90", "decay", "gone")
+    with pytest.raises(InputError, match="no claim of decay is about these cases alone"):
+        study.cases_of("90", "decay", "halved")
 
 
 def test_a_case_that_fails_leaves_the_claims_of_the_others(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -283,3 +301,19 @@ def test_a_study_in_a_checkout_changes_no_tracked_file(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert list(tmp_path.glob("results/studies/*.json"))
     assert subprocess.run([*git, "status", "--porcelain"], capture_output=True, text=True, check=True).stdout == ""
+
+
+@pytest.mark.parametrize(("share", "wrong"), [(0.85, ("robust", "fragile")), (0.80, ("robust",)), (0.90, ("fragile",))])
+def test_a_word_of_a_study_is_wrong_in_at_most_one_of_twenty(share: float, wrong: tuple[str, ...]) -> None:
+    """Exact: the chance of every count of draws that held, from look to look, where a claim holds in ``share``."""
+    alive, words, before = np.ones(1), dict.fromkeys(("robust", "fragile", "open"), 0.0), 0
+    for look in LOOKS:
+        alive = np.convolve(alive, stats.binom.pmf(np.arange(look - before + 1), look - before, share))
+        before = look
+        for holds, chance in enumerate(alive):
+            word = robustness(holds, look)
+            if word != "open" or look == LOOKS[-1]:
+                words[word] += chance
+                alive[holds] = 0.0
+    assert sum(words.values()) == pytest.approx(1)
+    assert sum(words[word] for word in wrong) < 0.05, words

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-import pybullet as bullet
 from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array
 from dexrepro.control.contract import Undefined, Unusable
 from dexrepro.experiment import Recording
 from dexrepro.physics.elements import Element, Ends
+from dexrepro.physics.engine import Scene
 from dexrepro.physics.plant import Controller, Reply, RigidBody, SimulatedArm
 
 Probe = Callable[[], ArrayLike]
@@ -28,7 +28,7 @@ class Stage(Ends, Protocol):
     step: float
     time: float
     gui: bool
-    client: int
+    scene: Scene
     arms: dict[str, SimulatedArm]
     elements: list[Element]
 
@@ -179,6 +179,7 @@ class _Scene:
         if unknown:
             raise ValueError(f"controllers for arms that are not in the world: {', '.join(sorted(unknown))}")
         self._world, self._step = world, world.step
+        self._advance = world.scene.advance
         self._arms = list(world.arms.values())
         for arm in self._arms:
             arm.prepare(period)
@@ -232,7 +233,7 @@ class _Scene:
     def step(self) -> None:
         for arm in self._arms:
             arm.apply()
-        bullet.stepSimulation(physicsClientId=self._world.client)
+        self._advance()
 
     def record(self, now: float) -> None:
         row = [now]

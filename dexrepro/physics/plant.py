@@ -6,23 +6,22 @@ world frame, and ``push(fx, fy, fz)`` [N]. Plain floats: at 1 kHz small arrays c
 
 from __future__ import annotations
 
-import weakref
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from operator import add
 from typing import NamedTuple
 
 import numpy as np
-import pybullet as bullet
-from scipy.spatial.transform import Rotation
 
 from dexrepro.arrays import Array
 from dexrepro.control.contract import Command, Undefined, Unusable
-from dexrepro.physics.loading import connect, disconnect, lighter, load_arm
 from dexrepro.physics.sensor import ForceChannel, JointChannel, Sensor
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.kinematics import forward, jacobian
 from dexrepro.robots.planar import PlanarTip
-from dexrepro.robots.rotations import rotated
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
 
 
 class Point:
@@ -37,33 +36,32 @@ class Point:
         """The world does not move."""
 
 
-class RigidBody(Point):
-    """A box, sphere or compound; static if its mass is 0."""
+class RigidBody(Point, ABC):
+    """A box, sphere or compound of one engine; static if its mass is 0. ``body`` is its number in the scene."""
 
-    def __init__(self, client: int, body: int, mass: float) -> None:
+    orientation: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    spin: Vector = (0.0, 0.0, 0.0)
+
+    def __init__(self, body: int, mass: float) -> None:
         super().__init__((0.0, 0.0, 0.0))
-        self.client, self.body, self.mass = client, body, mass
-        self.orientation = (0.0, 0.0, 0.0, 1.0)
-        self.spin = (0.0, 0.0, 0.0)
+        self.body, self.mass = body, mass
         self.read()
 
+    @abstractmethod
     def read(self) -> None:
         """Take pose and velocity from the engine."""
-        (self.x, self.y, self.z), self.orientation = bullet.getBasePositionAndOrientation(
-            self.body, physicsClientId=self.client
-        )
-        (self.vx, self.vy, self.vz), self.spin = bullet.getBaseVelocity(self.body, physicsClientId=self.client)
 
-    def place(self, position: tuple[float, float, float]) -> None:
-        """Put the body somewhere else [m], its orientation kept."""
-        self.x, self.y, self.z = position
-        bullet.resetBasePositionAndOrientation(self.body, position, self.orientation, physicsClientId=self.client)
+    @abstractmethod
+    def place(self, position: Sequence[float], orientation: Sequence[float] | None = None) -> None:
+        """Put the body somewhere else [m], its orientation (x, y, z, w) kept where none is given, at rest."""
 
     def push(self, fx: float, fy: float, fz: float) -> None:
         """Add a force [N], world frame, at the centre of mass."""
-        bullet.applyExternalForce(
-            self.body, -1, (fx, fy, fz), (self.x, self.y, self.z), bullet.WORLD_FRAME, physicsClientId=self.client
-        )
+        self.push_at((fx, fy, fz), (self.x, self.y, self.z))
+
+    @abstractmethod
+    def push_at(self, force: Vector, place: Vector) -> None:
+        """Add a force [N] at a place [m], both in the world frame."""
 
 
 class Sense:
@@ -124,26 +122,17 @@ Controller = Callable[[Sense], Reply]
 """What drives an arm: joint torques, a tuple (torque, damping), or an inner loop; see ``World.run``."""
 
 
-class SimulatedArm(Point):
-    """One arm in a World: its state, the forces on its end point and the torque it gets this step."""
+class SimulatedArm(Point, ABC):
+    """One arm in a World: its state, the forces on its end point and the torque it gets this step.
+
+    An engine gives it its state and takes its torque and forces; ``body`` is its number in the scene.
+    """
 
     def __init__(
-        self,
-        client: int,
-        name: str,
-        arm: Arm,
-        position: Array,
-        sensor: Sensor,
-        rng: np.random.Generator | None,
-        meshes: bool = False,
+        self, body: int, name: str, arm: Arm, position: Array, sensor: Sensor, rng: np.random.Generator | None
     ) -> None:
         super().__init__((0.0, 0.0, 0.0))
-        self.client, self.name, self.arm, self.dof = client, name, arm, arm.dof
-        self.body = load_arm(client, arm, meshes)
-        self._dynamics = client, self.body, lighter(arm)
-        if self._dynamics[2] < 1:
-            self._dynamics = _twin(client, arm)
-            weakref.finalize(self, disconnect, self._dynamics[0])
+        self.body, self.name, self.arm, self.dof = body, name, arm, arm.dof
         self.links = [link.name for link in arm.links] + [link.name for _, link in arm.bodies]
         self.feels_contact = False
         self._indices = list(range(arm.dof))
@@ -152,7 +141,6 @@ class SimulatedArm(Point):
         self._sensor, self._rng = sensor, rng
         self.force_channel: ForceChannel | None = None
         self.joint_channel: JointChannel | None = None
-        self.end = EndPoint(client, self.body, arm)
         self._planar = PlanarTip(arm) if arm.is_planar else None
         self._levers: list[tuple[float, float]] = []
         self.z = self._planar.height if self._planar else 0.0
@@ -165,11 +153,50 @@ class SimulatedArm(Point):
         self.reset(position)
         self.sense = Sense(self)
 
+    @abstractmethod
+    def _state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Joint angles and rates of the engine."""
+
+    @abstractmethod
+    def _put(self, angles: list[float], rates: list[float]) -> None:
+        """Give the engine joint angles and rates."""
+
+    @abstractmethod
+    def _give(self, torque: Sequence[float]) -> None:
+        """Hand the joint torques of the coming step to the engine."""
+
+    @abstractmethod
+    def _end(self) -> tuple[float, float, float, float, float, float]:
+        """Position [m] and velocity [m/s] of the end point of a spatial arm, world frame."""
+
+    @abstractmethod
+    def _push(self, force: Vector) -> None:
+        """Add a force [N] on the end point of a spatial arm for the coming step."""
+
+    @abstractmethod
+    def _dynamics(self) -> tuple[Array, Array]:
+        """Mass matrix (n, n) and bias torque (n,) at the state last read; the arrays are the caller's."""
+
+    @abstractmethod
+    def _felt_torque(self) -> Array:
+        """Joint torques J^T F (n,) [N m] of the force on the end point of a spatial arm, at the state last read."""
+
+    @abstractmethod
+    def touches(self) -> list[Touch]:
+        """Contact points as of the last step."""
+
+    @abstractmethod
+    def push_link(self, link: str, point: Vector, force: Vector) -> None:
+        """Add a force [N], world frame, at a point of a link frame [m]."""
+
+    @abstractmethod
+    def set_mass(self, link: str, mass: float) -> None:
+        """Change the mass [kg] of one body; its moments of inertia are kept, or by PyBullet those of its shapes."""
+
     def reset(self, position: Array, velocity: Array | None = None) -> None:
         """Put the joints at given angles [rad] and rates [rad/s] (at rest by default)."""
         rates = self._zeros if velocity is None else np.asarray(velocity, dtype=float).tolist()
-        for index, angle, rate in zip(self._indices, np.asarray(position, dtype=float).tolist(), rates, strict=True):
-            bullet.resetJointState(self.body, index, angle, rate, physicsClientId=self.client)
+        self._put(np.asarray(position, dtype=float).tolist(), rates)
         self.read()
 
     def prepare(self, period: float) -> None:
@@ -181,8 +208,7 @@ class SimulatedArm(Point):
 
     def read(self) -> None:
         """Take the joint state from the engine and forget last step's forces."""
-        states = bullet.getJointStates(self.body, self._indices, physicsClientId=self.client)
-        self.q, self.dq, _, _ = zip(*states)
+        self.q, self.dq = self._state()
         self._located = False
         self.fx = self.fy = self.fz = 0.0
         self.load = self._zeros
@@ -203,11 +229,7 @@ class SimulatedArm(Point):
                 vy += rate * x
             self.vx, self.vy = vx, vy
             return
-        state = bullet.getLinkState(self.body, self.end.link, 1, 1, physicsClientId=self.client)
-        (cx, cy, cz), (rx, ry, rz) = state[0], rotated(state[1], self.end.from_com)
-        (ux, uy, uz), (ox, oy, oz) = state[6], state[7]
-        self.x, self.y, self.z = cx + rx, cy + ry, cz + rz
-        self.vx, self.vy, self.vz = ux + oy * rz - oz * ry, uy + oz * rx - ox * rz, uz + ox * ry - oy * rx
+        self.x, self.y, self.z, self.vx, self.vy, self.vz = self._end()
 
     def push(self, fx: float, fy: float, fz: float) -> None:
         """Add a force on the end point [N], felt by the arm's force sensor."""
@@ -215,13 +237,6 @@ class SimulatedArm(Point):
         self.fy += fy
         self.fz += fz
         self.push_unsensed(fx, fy, fz)
-
-    def push_link(self, link: str, point: tuple[float, float, float], force: tuple[float, float, float]) -> None:
-        """Add a force [N], world frame, at a point of a link frame [m]."""
-        index = self.links.index(link)
-        state = bullet.getLinkState(self.body, index, 0, 1, physicsClientId=self.client)
-        place = [a + b for a, b in zip(state[4], rotated(state[5], point), strict=True)]
-        bullet.applyExternalForce(self.body, index, force, place, bullet.WORLD_FRAME, physicsClientId=self.client)
 
     def add_load(self, torque: Sequence[float] | Array) -> None:
         """Add joint torques [N m] that are not the controller's (friction, drag)."""
@@ -267,9 +282,7 @@ class SimulatedArm(Point):
         total = self.torque
         if self.load is not self._zeros:
             total = list(map(add, total, self.load))
-        bullet.setJointMotorControlArray(
-            self.body, self._indices, bullet.TORQUE_CONTROL, forces=total, physicsClientId=self.client
-        )
+        self._give(total)
 
     def _damped(self, torque: Array, damping: Torque, step: float) -> Array:
         """Torque minus damping times the velocity at the END of the step.
@@ -277,19 +290,13 @@ class SimulatedArm(Point):
         From M dq+ = M dq + h (torque + load - bias - D dq+) follows the acceleration a of (M + h D) a = torque + load
         - bias - D dq, and the torque to apply is torque - D (dq + h a). D is a vector (diagonal) or a matrix.
         """
-        client, body, factor = self._dynamics
         damping = np.asarray(damping, dtype=float)
         multiply = np.multiply if damping.ndim == 1 else np.matmul
         rate = np.array(self.dq)
-        mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client)) / factor
-        bias = np.array(bullet.calculateInverseDynamics(body, self.q, self.dq, self._zeros, physicsClientId=client))
-        bias /= factor
+        mass, bias = self._dynamics()
         rest = torque + self.load - bias - multiply(damping, rate)
         if self._planar is None and (self.fx or self.fy or self.fz):
-            linear, _ = bullet.calculateJacobian(
-                body, self.end.link, self.end.for_jacobian, self.q, self.dq, self._zeros, physicsClientId=client
-            )
-            rest += np.array((self.fx, self.fy, self.fz)) @ np.array(linear)
+            rest += self._felt_torque()
         if damping.ndim == 1:
             mass.flat[:: self.dof + 1] += step * damping
         else:
@@ -303,14 +310,11 @@ class SimulatedArm(Point):
         if self._planar is not None:
             self.load = [load + x * fy - y * fx for load, (x, y) in zip(self.load, self._levers)]
         else:
-            bullet.applyExternalForce(
-                self.body, self.end.link, (fx, fy, fz), (self.x, self.y, self.z), bullet.WORLD_FRAME,
-                physicsClientId=self.client,
-            )  # fmt: skip
+            self._push((fx, fy, fz))
 
     def _feel(self) -> None:
         """Add last step's contact forces on the last moving link and what it carries to the sensed force."""
-        touching = [touch for touch in touches(self.client, self.body) if touch.link >= self.dof - 1]
+        touching = [touch for touch in self.touches() if touch.link >= self.dof - 1]
         self.fx += sum(touch.force[0] for touch in touching)
         self.fy += sum(touch.force[1] for touch in touching)
         self.fz += sum(touch.force[2] for touch in touching)
@@ -325,51 +329,3 @@ class Touch(NamedTuple):
     position: tuple[float, float, float]
     normal_force: float
     force: tuple[float, float, float]
-
-
-def touches(client: int, body: int) -> list[Touch]:
-    """Contact points of a body as of the last step.
-
-    The engine is asked for all of its points: when it is asked for one body's, it turns the normal but not the
-    directions of friction where that body is the second of a pair.
-    """
-    result = []
-    for point in bullet.getContactPoints(physicsClientId=client):
-        if body not in point[1:3]:
-            continue
-        first = point[1] == body
-        sign = 1.0 if first else -1.0
-        parts = ((point[9], point[7]), (point[10], point[11]), (point[12], point[13]))
-        x, y, z = (sign * sum(size * direction[i] for size, direction in parts) for i in range(3))
-        link, other = (point[3], point[2]) if first else (point[4], point[1])
-        result.append(Touch(link, other, point[6], point[9], (x, y, z)))
-    return result
-
-
-class EndPoint:
-    """Where an arm's end point is on the body that carries it, in the frames the engine asks for.
-
-    link: the engine's index of that body; from_com: place [m] from the centre of mass, along the principal axes;
-    for_jacobian: place [m] from the link's origin, along the principal axes, as calculateJacobian takes it; rotation:
-    of the end point's frame relative to the principal axes. (The engine's link frame itself is of single precision.)
-    """
-
-    def __init__(self, client: int, body: int, arm: Arm) -> None:
-        poses = [pose.matrix for pose, _ in arm.bodies]
-        self.link = arm.dof - 1 + len(poses)
-        local = arm.tip
-        for pose in poses:
-            local = np.linalg.inv(pose) @ local
-        info = bullet.getDynamicsInfo(body, self.link, physicsClientId=client)
-        axes = Rotation.from_quat(info[4]).as_matrix()
-        self.rotation = axes.T @ local[:3, :3]
-        self.from_com: tuple[float, ...] = tuple((axes.T @ (local[:3, 3] - info[3])).tolist())
-        self.for_jacobian: tuple[float, ...] = tuple((axes.T @ local[:3, 3]).tolist())
-
-
-def _twin(client: int, arm: Arm) -> tuple[int, int, float]:
-    """A client of its own, under the same gravity, with an arm light enough for inverse dynamics, and its factor."""
-    parameters, factor = bullet.getPhysicsEngineParameters(physicsClientId=client), lighter(arm)
-    twin = connect()
-    bullet.setGravity(*(parameters[f"gravityAcceleration{axis}"] for axis in "XYZ"), physicsClientId=twin)
-    return twin, load_arm(twin, arm.scaled(factor)), factor

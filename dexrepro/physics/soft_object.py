@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-import pybullet as bullet
 
 from dexrepro.arrays import Real
 from dexrepro.physics.elements import Ends
@@ -92,9 +91,7 @@ class SoftObject:
                 fx, fy, fz = (force * n + d for n, d in zip(inward, drag))
                 ends[side].push(-fx, -fy, -fz)
                 place = ends[side].x, ends[side].y, ends[side].z
-                bullet.applyExternalForce(
-                    body.body, -1, (fx, fy, fz), place, bullet.WORLD_FRAME, physicsClientId=body.client
-                )
+                body.push_at((fx, fy, fz), place)
 
         return apply
 

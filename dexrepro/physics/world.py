@@ -1,4 +1,4 @@
-"""A PyBullet world: what stands in it, and how to run it."""
+"""A simulated world: what stands in it, and how to run it."""
 
 from __future__ import annotations
 
@@ -7,22 +7,19 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TypedDict, Unpack
 
 import numpy as np
-import pybullet as bullet
 from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array, Image
 from dexrepro.experiment import Recording
 from dexrepro.physics import loop
 from dexrepro.physics.elements import Element, Place
-from dexrepro.physics.loading import connect, undamped
-from dexrepro.physics.plant import Controller, Point, RigidBody, SimulatedArm, Touch, touches
-from dexrepro.physics.rendering import Camera, Overhead, Solid, look_down, photograph, solids, whereabouts
+from dexrepro.physics.engine import engine
+from dexrepro.physics.plant import Controller, Point, RigidBody, SimulatedArm, Touch
+from dexrepro.physics.rendering import Camera, Overhead, Solid
 from dexrepro.physics.sensor import Sensor
 from dexrepro.robots.arm import GREY, Arm, Colour, Shape
 
 Vector = Sequence[float]
-SHAPES = {"box": bullet.GEOM_BOX, "sphere": bullet.GEOM_SPHERE, "cylinder": bullet.GEOM_CYLINDER,
-          "capsule": bullet.GEOM_CAPSULE}  # fmt: skip
 
 
 class BodyOptions(TypedDict, total=False):
@@ -42,11 +39,12 @@ class BodyOptions(TypedDict, total=False):
 
 
 class World:
-    """One physics client of its own, closed at the end of a ``with`` block; several may live side by side.
+    """A scene of its own, closed at the end of a ``with`` block; several may live side by side.
 
     step: physics step [s]; gravity: (3,) [m/s^2]; perturbation: added to every initial joint angle [rad];
-    iterations: of the contact solver. The world frame has z up; positions in m, forces in N. Setting ``World.live``
-    makes every world open a window and run in real time; ``World.meshes`` shows arms as their makers drew them.
+    iterations: of PyBullet's contact solver. The world frame has z up; positions in m, forces in N. Setting
+    ``World.live`` makes every world open a window and run in real time; ``World.meshes`` shows arms as their makers
+    drew them.
     """
 
     live = meshes = False
@@ -60,12 +58,7 @@ class World:
     ) -> None:
         self.step, self.time, self.gui = step, 0.0, World.live
         self.perturbation = perturbation
-        self.client = connect(self.gui)
-        bullet.setGravity(*gravity, physicsClientId=self.client)
-        bullet.setPhysicsEngineParameter(
-            fixedTimeStep=step, numSubSteps=0, numSolverIterations=iterations, deterministicOverlappingPairs=1,
-            physicsClientId=self.client,
-        )  # fmt: skip
+        self.scene = engine().scene(step, gravity, iterations, self.gui)
         self.arms: dict[str, SimulatedArm] = {}
         self.bodies: dict[str, RigidBody] = {}
         self.elements: list[Element] = []
@@ -77,10 +70,8 @@ class World:
         self.close()
 
     def close(self) -> None:
-        """Disconnect the physics client; the world cannot be used afterwards."""
-        if self.client >= 0:
-            bullet.disconnect(physicsClientId=self.client)
-            self.client = -1
+        """Free what the engine holds; the world cannot be used afterwards."""
+        self.scene.close()
 
     def add_arm(
         self,
@@ -98,10 +89,9 @@ class World:
         """
         self._check_new(name)
         start = np.asarray(position, dtype=float) + self.perturbation
-        plant = SimulatedArm(self.client, name, arm, start, sensor, rng, World.meshes or self.gui)
+        meshes = World.meshes or self.gui
+        plant = self.scene.arm(name, arm, start, contacts=contacts, sensor=sensor, rng=rng, meshes=meshes)
         plant.feels_contact = contacts
-        if not contacts:
-            self._untouchable(plant.body)
         self.arms[name] = plant
         return plant
 
@@ -124,17 +114,10 @@ class World:
         spinningFriction, rollingFriction, contactStiffness with contactDamping, restitution.
         """
         self._check_new(name)
-        visual = self._shape_arrays(shapes, visual=True)
-        collision = self._shape_arrays(shapes, visual=False) if collides else -1
-        body = bullet.createMultiBody(
-            mass, collision, visual, list(position), bullet.getQuaternionFromEuler(list(rpy)),
-            physicsClientId=self.client,
+        self.bodies[name] = self.scene.rigid_body(
+            shapes, position, rpy, mass=mass, inertia=inertia,
+            friction=friction, collides=collides, contact=contact,
         )  # fmt: skip
-        undamped(self.client, body)
-        if inertia is not None:
-            contact["localInertiaDiagonal"] = list(inertia)  # type: ignore[assignment]
-        bullet.changeDynamics(body, -1, lateralFriction=friction, physicsClientId=self.client, **contact)
-        self.bodies[name] = RigidBody(self.client, body, mass)
         return self.bodies[name]
 
     def add_box(
@@ -182,10 +165,7 @@ class World:
             name, radius, (plant.x, plant.y, plant.z - drop), mass, collides=False, inertia=[inertia] * 3,
             angularDamping=angular_damping,
         )  # fmt: skip
-        bullet.createConstraint(
-            plant.body, plant.end.link, body.body, -1, bullet.JOINT_POINT2POINT, (0, 0, 0), plant.end.from_com,
-            (0, 0, drop), physicsClientId=self.client,
-        )  # fmt: skip
+        self.scene.hinge(plant, body, (0.0, 0.0, drop))
         return body
 
     def add(self, *elements: Element) -> None:
@@ -194,8 +174,7 @@ class World:
 
     def set_mass(self, arm: str, link: str, mass: float) -> None:
         """Change the mass [kg] of one body of an arm, for instance of a tool that has taken up a payload."""
-        plant = self.arm(arm)
-        bullet.changeDynamics(plant.body, plant.links.index(link), mass=mass, physicsClientId=self.client)
+        self.arm(arm).set_mass(link, mass)
 
     def arm(self, name: str) -> SimulatedArm:
         """The arm of a name. Raises KeyError, naming those there are, where there is none."""
@@ -218,7 +197,7 @@ class World:
 
     def contacts(self, name: str) -> list[Touch]:
         """Points [m] and forces [N] where a named body touches anything, as of the last step."""
-        return touches(self.client, self._body(name))
+        return self.scene.touches(self._body(name))
 
     def contact_force(self, first: str, second: str) -> float:
         """Sum of the normal forces between two named bodies [N], as of the last step."""
@@ -227,8 +206,7 @@ class World:
 
     def distance(self, first: str, second: str, limit: float = 1.0) -> float:
         """Smallest distance between two named bodies [m], negative where they overlap, at most ``limit``."""
-        points = bullet.getClosestPoints(self._body(first), self._body(second), limit, physicsClientId=self.client)
-        return min((point[8] for point in points), default=limit)
+        return self.scene.distance(self._body(first), self._body(second), limit)
 
     def run(
         self,
@@ -275,37 +253,25 @@ class World:
         The state of the simulation is left as it was. size: (width, height) in pixels.
         """
         with self._posed(positions or {}, poses or {}):
-            return photograph(self.client, camera, size)
+            return self.scene.photograph(camera, size)
 
     @contextlib.contextmanager
     def _posed(self, positions: Mapping[str, ArrayLike], poses: Mapping[str, ArrayLike]) -> Iterator[None]:
-        state = bullet.saveState(physicsClientId=self.client)
-        for name, position in positions.items():
-            self.arm(name).reset(np.asarray(position, dtype=float))
-        for name, pose in poses.items():
-            values = np.asarray(pose, dtype=float).tolist()
-            bullet.resetBasePositionAndOrientation(
-                self._body(name), values[:3], values[3:] or (0, 0, 0, 1), physicsClientId=self.client
-            )
-        yield
-        bullet.restoreState(stateId=state, physicsClientId=self.client)
-        bullet.removeState(state, physicsClientId=self.client)
+        with self.scene.kept():
+            for name, position in positions.items():
+                self.arm(name).reset(np.asarray(position, dtype=float))
+            for name, pose in poses.items():
+                values = np.asarray(pose, dtype=float).tolist()
+                self.bodies[name].place(values[:3], values[3:] or (0.0, 0.0, 0.0, 1.0))
+            yield
 
     def look_down(self, camera: Overhead) -> tuple[Image, Array]:
         """Colours (height, width, 3) and heights z (height, width) [m] that an overhead camera sees, free of noise."""
-        return look_down(self.client, camera)
+        return self.scene.look_down(camera)
 
     def grip(self, arm: str, body: str) -> None:
         """Fix a body to an arm's end point as it lies there now, as closed fingers would; it still touches the rest."""
-        plant, held = self.arm(arm), self.bodies[body]
-        state = bullet.getLinkState(plant.body, plant.end.link, 0, 1, physicsClientId=self.client)
-        held.read()
-        to_link = bullet.invertTransform(state[0], state[1])
-        place, turn = bullet.multiplyTransforms(*to_link, (held.x, held.y, held.z), held.orientation)
-        bullet.createConstraint(
-            plant.body, plant.end.link, held.body, -1, bullet.JOINT_FIXED, (0, 0, 0), place, (0, 0, 0), turn,
-            physicsClientId=self.client,
-        )  # fmt: skip
+        self.scene.hold(self.arm(arm), self.bodies[body])
 
     def snapshot(
         self, recording: Recording, time: float, camera: Camera = Camera(), size: tuple[int, int] = (640, 480)
@@ -315,10 +281,10 @@ class World:
 
     def animate(self, recording: Recording, times: Sequence[float]) -> tuple[list[Solid], Array]:
         """What is seen of the scene, and the poses (times, solids, 7) of it at the samples nearest to times [s]."""
-        seen, poses = solids(self.client), []
+        seen, poses = self.scene.solids(), []
         for time in times:
             with self._posed(*self._recorded(recording, time)):
-                poses.append(whereabouts(self.client, seen))
+                poses.append(self.scene.whereabouts(seen))
         return seen, np.array(poses)
 
     def _recorded(self, recording: Recording, time: float) -> tuple[dict[str, Array], dict[str, Array]]:
@@ -337,41 +303,3 @@ class World:
     def _check_new(self, name: str) -> None:
         if name in self.arms or name in self.bodies:
             raise ValueError(f"there is already something named '{name}' in the world")
-
-    def _untouchable(self, body: int) -> None:
-        for link in range(-1, bullet.getNumJoints(body, physicsClientId=self.client)):
-            bullet.setCollisionFilterGroupMask(body, link, 0, 0, physicsClientId=self.client)
-
-    def _shape_arrays(self, shapes: Sequence[Shape], visual: bool) -> int:
-        sizes = [_engine_size(shape, visual) for shape in shapes]
-        common = {
-            "shapeTypes": [SHAPES[shape.kind] for shape in shapes],
-            "radii": [size[0] for size in sizes],
-            "halfExtents": [size[1] for size in sizes],
-            "lengths": [size[2] for size in sizes],
-            "physicsClientId": self.client,
-        }
-        places = [list(shape.pose.xyz) for shape in shapes]
-        turns = [list(shape.pose.quaternion) for shape in shapes]
-        if not visual:
-            return int(
-                bullet.createCollisionShapeArray(
-                    collisionFramePositions=places, collisionFrameOrientations=turns, **common
-                )
-            )
-        return int(
-            bullet.createVisualShapeArray(
-                visualFramePositions=places,
-                visualFrameOrientations=turns,
-                rgbaColors=[list(shape.colour) for shape in shapes],
-                **common,
-            )
-        )
-
-
-def _engine_size(shape: Shape, visual: bool) -> tuple[float, list[float], float]:
-    """Radius, half extents and length as PyBullet's shape arrays take them."""
-    if shape.kind == "box":
-        return 0.0, [side / 2 for side in shape.size], 0.0
-    radius, *length = shape.size
-    return radius, [0.0, 0.0, 0.0], length[0] if length else 0.0

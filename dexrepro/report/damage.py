@@ -8,16 +8,17 @@ import re
 import zlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
-import pandas as pd
 import yaml
 
 from dexrepro import chapters
 from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment
-from dexrepro.recordings import read_frame
 from dexrepro.storage import read_json, read_text, read_yaml
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LARGEST = 1 << 28  # bytes of a series when it is unpacked
 BLOCK = 1 << 20  # bytes, of which no line has so many
@@ -81,6 +82,8 @@ def _check_lines(file: IO[bytes]) -> None:
 
 def read_table(path: Path) -> pd.DataFrame:
     """A table of a result. Raises InputError where it is none."""
+    from dexrepro.recordings import read_frame
+
     try:
         with open(path, "rb") as file:
             _check_lines(file)

@@ -2,22 +2,40 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from dexrepro import baselines, chapters
 from dexrepro.claims import filled
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter, config_files, experiment_cases
+from dexrepro.kept import kept
 from dexrepro.study import robustness_of
 
 
 def listing() -> dict[str, Any]:
     """The data behind ``dexrepro list --json``."""
-    return {"chapters": [_chapter(number) for number in chapters.numbers()]}
+    found = [chapter_listing(number) for number in chapters.numbers()]
+    for chapter in found:
+        words = robustness_of(chapter["chapter"])
+        chapter["claims"] = [{**claim, "robustness": words.get(claim["id"], "")} for claim in chapter["claims"]]
+    return {"chapters": found}
 
 
-def _chapter(number: str) -> dict[str, Any]:
+def chapter_listing(number: str) -> dict[str, Any]:
+    """One chapter, without what studies show of its claims; its figures are imported when its files have changed."""
+
+    def listed() -> tuple[dict[str, Any], set[Path]]:
+        home, folder, package = Path(chapters.__file__).parent, chapters.folders()[number], Path(__file__).parents[1]
+        files = {*folder.rglob("*.py"), *home.glob("*.py"), *package.glob("*.py"), *config_files(number).values()}
+        files |= {Path(__file__), *(baselines.baseline_file(number, name) for name in chapters.names(number))}
+        files |= {path.parent for path in files}
+        return _listed(number), {path for path in files if path.exists()}
+
+    return dict(kept(f"list {number} of {chapters.folders()[number]}", listed))
+
+
+def _listed(number: str) -> dict[str, Any]:
     chapter, composed = chapters.load(number), compose_chapter(number)
-    words = robustness_of(number)
     metrics = {
         name: entry["value"] for item in baselines.stored(number).values() for name, entry in item.metrics.items()
     }
@@ -46,7 +64,6 @@ def _chapter(number: str) -> dict[str, Any]:
                 "no_control": claim.no_control or claim.by_construction or claim.not_testable,
                 "credits": claim.credits,
                 "by_construction": claim.by_construction,
-                "robustness": words.get(claim.id, ""),
             }
             for claim in chapter.claims
         ],

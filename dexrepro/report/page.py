@@ -11,7 +11,7 @@ from typing import Any
 
 import jinja2
 
-from dexrepro import __version__, chapters, study
+from dexrepro import __version__, chapters, crosscheck, study
 from dexrepro.report import equations, explorer, studies, symbols, verdicts, words
 from dexrepro.report.contents import Contents, in_book_order
 from dexrepro.report.damage import check_result
@@ -51,6 +51,7 @@ class _Report:
             "VERDICTS": verdicts.VERDICTS,
             "MARKS": verdicts.MARKS,
             "KINDS": KINDS,
+            "engines": crosscheck.verdicts(results),
         }
         self.search: list[tuple[str, str, str, str]] = []
         self.code = Sources(folder)
@@ -74,7 +75,13 @@ class _Report:
             self._page_of_run(run, common)
         self._page("claims", here="claims", **common)
         self._page("errata", here="errata", **common)
-        self._page("verdicts", here="verdicts", examples=verdicts.examples(claims), **common)
+        agreeing = [key for key, pair in crosscheck.verdicts(self.results).items() if len(set(pair)) == 1]
+        told: dict[str, Any] = {
+            "examples": verdicts.examples(claims),
+            "never": verdicts.never_failed(claims),
+            "agreeing": agreeing,
+        }
+        self._page("verdicts", here="verdicts", **told, **common)
         self._page("symbols", here="symbols", **common)
         self._page("equations", here="equations", equations=index, **common)
         self._write_sources(common["provenance"])

@@ -7,17 +7,15 @@ import math
 import re
 import textwrap
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 MM = 1 / 25.4
 ONE_COLUMN = 85 * MM  # inch
@@ -74,10 +72,27 @@ _PARAMETERS: Any = {
 }
 
 
+@cache
+def _pyplot() -> Any:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot
+
+    return matplotlib.pyplot
+
+
+def __getattr__(name: str) -> Any:
+    """``plt`` is pyplot, loaded when the first figure is drawn: who lists or checks figures needs none of it."""
+    if name != "plt":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return _pyplot()
+
+
 @contextlib.contextmanager
 def style() -> Iterator[None]:
     """The style of all figures; the runner draws inside it."""
-    with plt.rc_context(_PARAMETERS):
+    with _pyplot().rc_context(_PARAMETERS):
         yield
 
 
@@ -85,7 +100,7 @@ def subplots(
     rows: int = 1, columns: int = 1, *, width: float = TWO_COLUMNS, height: float = 2.2, **options: Any
 ) -> Any:
     """``plt.subplots`` at a column's width; height in inches. Small multiples: pass sharex / sharey."""
-    return plt.subplots(rows, columns, figsize=(width, height), **options)
+    return _pyplot().subplots(rows, columns, figsize=(width, height), **options)
 
 
 def title(figure: Figure, text: str) -> None:
@@ -173,6 +188,8 @@ def label_end(axes: Axes, line: Any, text: str, dy: float = 0) -> None:
 
 def legend_below(figure: Figure, lines: Mapping[str, Mapping[str, Any]]) -> None:
     """A legend below all panels, from names and what their lines look like."""
+    from matplotlib.lines import Line2D
+
     handles = [Line2D([], [], label=name, **look) for name, look in lines.items()]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(lines))
 
@@ -191,4 +208,4 @@ def save(figure: Figure, folder: Path, figure_id: str) -> None:
     figure.set_layout_engine("none")  # laid out once, for both files
     figure.savefig(stem.with_suffix(".png"), metadata={"Software": None})
     figure.savefig(stem.with_suffix(".svg"), metadata={"Date": None, "Creator": "dexrepro"})
-    plt.close(figure)
+    _pyplot().close(figure)

@@ -6,18 +6,19 @@ it counts as not severely tested, never as tested.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from dexrepro import claims
-from dexrepro.claims import AFTER_CORRECTION, NOT_EVALUATED, REPRODUCED, ROBUST
+from dexrepro.claims import AFTER_CORRECTION, NOT_ATTRIBUTED, NOT_EVALUATED, REPRODUCED, ROBUST
 
 Claim = Mapping[str, Any]
 
 HOLDS = (REPRODUCED, AFTER_CORRECTION)
 VERDICTS = {**claims.VERDICTS, NOT_EVALUATED: "needs a number that this result does not have"}
 MARKS = {
-    REPRODUCED: "circle", AFTER_CORRECTION: "diamond", claims.NOT_ATTRIBUTED: "triangle",
+    REPRODUCED: "circle", AFTER_CORRECTION: "diamond", NOT_ATTRIBUTED: "triangle",
     claims.READING_DEPENDENT: "hexagon", claims.BY_CONSTRUCTION: "square", claims.NOT_REPRODUCED: "cross",
     claims.NOT_TESTABLE: "dash", NOT_EVALUATED: "dash",
 }  # fmt: skip
@@ -28,6 +29,24 @@ def is_severe(claim: Claim) -> bool:
     """Whether the run without what the claim credits makes the statement fail."""
     margin = claim.get("control_margin")
     return margin is not None and not margin > 0
+
+
+def seen_to_fail(claim: Claim) -> bool:
+    """Whether the statement fails in a run on record: its own, its control's, a printed form's, a reading's, a draw."""
+    row = claim.get("study") or {"holds": 0, "samples": 0}
+    margins = [claim.get(key) for key in ("margin", "control_margin", "printed_margin")]
+    margins += (claim.get("readings") or {}).values()
+    return row["holds"] < row["samples"] or any(margin is not None and not margin > 0 for margin in margins)
+
+
+def never_failed(evaluated: Iterable[Claim]) -> list[tuple[Claim, str]]:
+    """The book's claims whose statement has failed in no run on record, those by construction apart, and why."""
+    return [
+        (claim, claim.get("no_control") or ("its control holds as well" if claim["verdict"] == NOT_ATTRIBUTED else ""))
+        for claim in evaluated
+        if claim["source"] == "book" and claim["margin"] is not None and not claim["by_construction"]
+        and not seen_to_fail(claim)
+    ]  # fmt: skip
 
 
 def robustness(row: Mapping[str, Any] | None) -> str:
@@ -96,6 +115,19 @@ def answer(evaluated: Sequence[Claim]) -> str:
     )
     first = f"{how_many} of the book's {len(book)} claims {'holds' if len(held) == 1 else 'hold'}{after}."
     return f"{first} {missed}." if missed else first
+
+
+def to_name(evaluated: Iterable[Claim], stored: Mapping[str, str]) -> list[str]:
+    """A line for each claim that does not hold, or ends otherwise than is stored, with its margin."""
+    lines = []
+    for claim in evaluated:
+        verdict, was = claim["verdict"], stored.get(claim["id"])
+        changed = was not in (None, verdict)
+        if verdict != NOT_EVALUATED and (changed or verdict == claims.NOT_REPRODUCED):
+            margin = "" if claim["margin"] is None else f", margin {claim['margin']:+.2g}"
+            said = textwrap.shorten(claim["statement"], 90, placeholder=" ...")
+            lines.append(f"{claim['id']}  {verdict}{margin}{f' (stored: {was})' if changed else ''}: {said}")
+    return lines
 
 
 def examples(evaluated: Iterable[Claim]) -> list[Claim]:

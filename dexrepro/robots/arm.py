@@ -294,26 +294,29 @@ class Arm:
         link = Link(tool.name, tool.mass, tool.com, tool.inertia, tool.shapes)
         return (*self.fixed, (self.end @ tool.mount, link))
 
+    @cached_property
+    def shown(self) -> tuple[Link, ...]:
+        """The root link "world", then every body, each with the shapes that it shows."""
+        hidden = self.tool.replaces if self.tool else ()
+        bodies = [*self.links, *(link for _, link in self.bodies)]
+        links = [replace(link, shapes=() if link.name in hidden else link.shapes) for link in bodies]
+        if self.tool and self.tool.mass == 0:
+            mount = self.end @ self.tool.mount
+            shapes = tuple(replace(shape, pose=mount @ shape.pose) for shape in self.tool.shapes)
+            links[-1] = replace(links[-1], shapes=(*links[-1].shapes, *shapes))
+        base = tuple(replace(shape, pose=self.base @ shape.pose) for shape in self.base_shapes)
+        return (Link("world", 1.0, (0, 0, 0), (1, 0, 0, 1, 0, 1), base), *links)
+
     def urdf(self, meshes: bool = False) -> str:
         """The arm as URDF text: root link "world", then one link for every body, all with explicit inertials.
 
         meshes: seen in the place of the other shapes, where a body has some.
         One element a line: PyBullet breaks lines of more than 8 kB anywhere, even within a number.
         """
-        hidden = self.tool.replaces if self.tool else ()
-        chain = [
-            (_revolute(joint, Pose.of(origin)), link)
-            for joint, origin, link in zip(self.joints, self.origins, self.links, strict=True)
-        ]
-        chain += [(_fixed(link.name, pose), link) for pose, link in self.bodies]
-        links = [replace(link, shapes=() if link.name in hidden else link.shapes) for _, link in chain]
-        if self.tool and self.tool.mass == 0:
-            mount = self.end @ self.tool.mount
-            shapes = tuple(replace(shape, pose=mount @ shape.pose) for shape in self.tool.shapes)
-            links[-1] = replace(links[-1], shapes=(*links[-1].shapes, *shapes))
-        base = tuple(replace(shape, pose=self.base @ shape.pose) for shape in self.base_shapes)
-        links.insert(0, Link("world", 1.0, (0, 0, 0), (1, 0, 0, 1, 0, 1), base))
-        joints = [joint(parent.name, child.name) for (joint, _), (parent, child) in zip(chain, pairwise(links))]
+        links = self.shown
+        chain = [_revolute(joint, Pose.of(origin)) for joint, origin in zip(self.joints, self.origins, strict=True)]
+        chain += [_fixed(link.name, pose) for pose, link in self.bodies]
+        joints = [joint(parent.name, child.name) for joint, (parent, child) in zip(chain, pairwise(links))]
         body = "".join([link.urdf(meshes) for link in links] + joints)
         return f"<robot name={quoteattr(self.name)}>{body}</robot>".replace("><", ">\n<")
 

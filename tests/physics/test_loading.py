@@ -7,7 +7,7 @@ from dataclasses import replace
 import pybullet as bullet
 import pytest
 
-from dexrepro.physics.loading import connect, load_arm
+from dexrepro.physics.engines.pybullet import connect, load_arm
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.baxter import baxter
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dexrepro.physics.loading import LoadingError, connect, load_arm
-from dexrepro.physics.plant import bullet
+from dexrepro.physics.engines.pybullet import bullet, connect, load_arm
+from dexrepro.physics.loading import LoadingError
 from dexrepro.robots.arm import Arm, InvalidInertia, Joint, Link, Pose, Shape, Tool
 from dexrepro.robots.baxter import _data, baxter
 from dexrepro.robots.planar import planar

@@ -8,7 +8,7 @@ import numpy as np
 import pybullet as bullet
 import pytest
 
-from dexrepro.physics.loading import connect, disconnect, load_arm
+from dexrepro.physics.engines.pybullet import connect, disconnect, load_arm
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
 from dexrepro.robots.kinematics import forward

@@ -5,17 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
+from dexrepro.chapters.chapter3.measures import headed
 from dexrepro.chapters.chapter3.scene import ARM, centreline, gripper_arm
 from dexrepro.control.remote_centre import closest_point, tool_axis
-from dexrepro.experiment import Config, Drawing, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Recording
+from dexrepro.report import style
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.rotations import tilt
 
 
 def describe(config: Config) -> str:
     """One case in a few words."""
-    parts = [f"{config.task.replace('_', ' ')} task", f"mass error {100 * config.model.mass_error:g} %"]
+    error = config.model.mass_error
+    known = f"mass error {100 * error:g} %" if isinstance(error, (int, float)) else "mass errors that differ"
+    parts = [f"{config.task.replace('_', ' ')} task", known]
     if config.straight:
         parts.append("straight to the target")
     parts.append(f"K_R {config.null_space.stiffness:g} N/m" if config.null_space.enabled else "no null-space torque")
@@ -23,10 +28,18 @@ def describe(config: Config) -> str:
     return ", ".join(parts)
 
 
+def by_reading(metrics: AllMetrics, config: Config) -> pd.DataFrame:
+    """One row a case: what it is in a few words, and all its metrics."""
+    rows = [
+        {"case": case, "reading": describe(config.cases[case]), **values}
+        for case, values in metrics.items()
+        if case in config.cases
+    ]
+    return headed(rows)
+
+
 def picture(image: Any, finding: str) -> Drawing:
     """One rendered view."""
-    from dexrepro.report import style
-
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.7)
     axes.imshow(style.trimmed({"view": image})["view"])
     axes.set_axis_off()
@@ -36,8 +49,6 @@ def picture(image: Any, finding: str) -> Drawing:
 
 def pictures(images: dict[str, Any], finding: str) -> Drawing:
     """Rendered views side by side, each with its label."""
-    from dexrepro.report import style
-
     figure, grid = style.subplots(1, len(images), height=2.9)
     for axes, (label, image) in zip(grid, style.trimmed(images).items()):
         axes.imshow(image)
@@ -49,8 +60,6 @@ def pictures(images: dict[str, Any], finding: str) -> Drawing:
 
 def steps(recording: Recording, config: Config) -> Drawing:
     """The four instants of Fig. 3.6."""
-    from dexrepro.report import style
-
     approach, insertion, _ = config.phases
     labels = {
         "start": "(a) 0 s:\nstart",
@@ -70,8 +79,6 @@ def steps(recording: Recording, config: Config) -> Drawing:
 
 def orientation(recording: Recording, config: Config) -> Drawing:
     """Fig. 3.2 from a recorded instant half-way to the opening."""
-    from dexrepro.report import style
-
     index = int(np.abs(recording.time - config.phases[0] / 2).argmin())
     tip, rotation = forward(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])
     centre, target = np.array(config.centre), np.array(config.target)
@@ -92,8 +99,6 @@ def orientation(recording: Recording, config: Config) -> Drawing:
 
 def shortest_distance(recording: Recording, config: Config) -> Drawing:
     """Fig. 3.3 from a recorded instant half-way to the target."""
-    from dexrepro.report import style
-
     time = config.phases[0] + config.phases[1] / 2
     index = int(np.abs(recording.time - time).argmin())
     corners = centreline(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])

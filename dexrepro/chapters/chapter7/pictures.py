@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
 from dexrepro.arrays import Array
 from dexrepro.humans.reaching import Obstacle, Reach
 from dexrepro.report import style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 DIRECTIONS: dict[str, dict[str, Any]] = {
     "left": {"color": style.EXTRA[0], "linestyle": "-"},
@@ -37,7 +37,7 @@ def side(axes: Axes, paths: Array, reach: Reach, **line: Any) -> None:
 def footprint(axes: Axes, obstacle: Obstacle, **patch: Any) -> None:
     x, y = np.subtract(obstacle.position, obstacle.side / 2)
     options: dict[str, Any] = {"facecolor": "#D9D9D9", "edgecolor": "#555555", "linewidth": 0.6, "zorder": 0} | patch
-    axes.add_patch(Rectangle((x, y), obstacle.side, obstacle.side, **options))
+    axes.add_patch(style.plt.Rectangle((x, y), obstacle.side, obstacle.side, **options))
 
 
 def profile(axes: Axes, obstacle: Obstacle, reach: Reach, **patch: Any) -> None:
@@ -46,7 +46,7 @@ def profile(axes: Axes, obstacle: Obstacle, reach: Reach, **patch: Any) -> None:
     half = obstacle.side / 2 * (abs(dx) + abs(dy))
     middle = reach.locate(obstacle.position)[0] * reach.length
     options: dict[str, Any] = {"facecolor": "#D9D9D9", "edgecolor": "#555555", "linewidth": 0.6, "zorder": 0} | patch
-    axes.add_patch(Rectangle((middle - half, 0), 2 * half, obstacle.height, **options))
+    axes.add_patch(style.plt.Rectangle((middle - half, 0), 2 * half, obstacle.height, **options))
 
 
 def ends(axes: Axes, reach: Reach) -> None:
@@ -64,7 +64,7 @@ def name_directions(axes: Axes, **options: Any) -> None:
 
 def plans_over_sides(columns: int, height: float) -> tuple[Figure, Any, Any]:
     """A figure of plan views (2, columns), each with the height over the path below it."""
-    figure = plt.figure(figsize=(style.TWO_COLUMNS, height))
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, height))
     grid = figure.add_gridspec(4, columns, height_ratios=[2.1, 1.0] * 2)
     plans, sides = (
         np.array([[figure.add_subplot(grid[2 * r + k, c]) for c in range(columns)] for r in range(2)]) for k in (0, 1)

@@ -8,15 +8,15 @@ from __future__ import annotations
 import zlib
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array
 from dexrepro.chapters.demonstrations import recorded
-from dexrepro.config import compose_chapter
 from dexrepro.control.contract import printed_forms
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config
 from dexrepro.humans.muscle import Muscle, low_pass
 from dexrepro.humans.reaching import Obstacle, Reach, Reacher
@@ -119,10 +119,25 @@ def recorded_reaches(config: Config, shape: tuple[int, ...]) -> Array:
     return paths
 
 
+def with_recorded_reactions(config: Config, reactions: Array) -> Array:
+    """The same (conditions, repetitions, N, 3) [cm] with the user's own in the place of some, by condition."""
+    known = {"_".join(c.labels): index for index, c in enumerate(conditions(config))}
+    for name, files in (config.reactions or {}).items():
+        if name not in known:
+            raise InputError(f"reactions: unknown condition '{name}': {nearest(name, known)}")
+        try:
+            own = recorded_reaches(Config({**config, "demonstrations": files}), reactions.shape[1:])
+        except InputError as error:
+            raise InputError(str(error).replace("demonstrations", f"reactions.{name}", 1)) from error
+        reactions[known[name]] = moved(config, own)
+    return reactions
+
+
 def moved_scene(start: ArrayLike, goal: ArrayLike) -> str:
     """Overrides that take the book's scene to another way (2,), (2,) [cm]: the obstacles stand at the same share of
     it, and are smaller where it is short."""
-    scene = Config.of(compose_chapter("7")["shared"]["scene"])
+    configuration = import_module("dexrepro.config")  # by name: what words a sentence is no part of a case's key
+    scene = Config.of(configuration.compose_chapter("7")["shared"]["scene"])
     old, new = (np.array(ends, dtype=float) @ (1, 1j) for ends in ((scene.start, scene.goal), (start, goal)))
     turn = (new[1] - new[0]) / (old[1] - old[0])
     places = {

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import MAPPINGS, boards
 
@@ -24,8 +25,6 @@ TABLES = {"T1.D": "Scores with the general and the proposed mapping, for several
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "book" not in recordings:
         return {}
-    from dexrepro.report import style
-
     recording, numbers = recordings["book"], metrics["book"]
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 3.7))
     halves = figure.add_gridspec(1, 2, width_ratios=(1.35, 1.0))
@@ -49,8 +48,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_hits(axis: Any, hits: pd.DataFrame, config: Config) -> None:
-    from dexrepro.report import style
-
     # Boards are drawn side by side, enlarged: their distance of 250 mm would hide the rings.
     for k in range(6):
         x, y = 66.0 * (k // 2), -66.0 * (k % 2)
@@ -72,8 +69,6 @@ def _draw_hits(axis: Any, hits: pd.DataFrame, config: Config) -> None:
 
 
 def _draw_speed(axes: Any, recording: Recording) -> None:
-    from dexrepro.report import style
-
     time = recording.time
     part = time < 12.0
     speed = np.r_[0.0, np.linalg.norm(np.diff(recording["hand"], axis=0), axis=1) / 0.01]

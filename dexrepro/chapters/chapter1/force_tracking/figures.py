@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 from dexrepro.robots.planar import PlanarChain
 
 from .experiment import CASES, LATE
@@ -40,8 +41,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_arms(recording: Recording, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(1, 4, height=1.95, sharex=True, sharey=True)
     chains = [PlanarChain(config.arm.lengths, config.arm.masses, tuple(base)) for base in config.bases.values()]
     for axis, instant in zip(axes, np.linspace(0, recording.time[-1], 4)):
@@ -66,8 +65,6 @@ def _draw_arms(recording: Recording, config: Config) -> Drawing:
 
 
 def _draw_errors(recordings: Recordings, metrics: Any) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(4, 3, height=6.6, sharex=True, sharey="row")
     for column, case in enumerate(CASES):
         for law, role in ROLES.items():
@@ -105,6 +102,8 @@ def _draw_errors(recordings: Recordings, metrics: Any) -> Drawing:
     return figure
 
 
+LAWS = ("proposed", "integral", "force", "passive", "proposed_tuned", "force_tuned", "passive_tuned", "printed",
+        "printed_inverse")  # fmt: skip
 COLUMNS = {
     "rmse": "RMSE [N]",
     "rmse_late": f"RMSE after {LATE:g} s [N]",
@@ -114,9 +113,8 @@ COLUMNS = {
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    laws = dict.fromkeys(case.partition("_")[2] for case in metrics if case[:2] in CASES)
     rows = []
-    for law in laws:
+    for law in (law for law in LAWS if any(f"{case}_{law}" in metrics for case in CASES)):
         row: dict[str, Any] = {"law": law.replace("_", " ")}
         for case in CASES:
             values = metrics.get(f"{case}_{law}", {})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "1.C": Figure(
@@ -19,8 +20,6 @@ TABLES = {"T1.G": "Hand-over from the field to the force law"}
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"latched", "bare"} <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     figure, axes = style.subplots(2, 2, height=2.8, sharex=True, sharey="row", height_ratios=(2, 1))
     for column, (case, role, word) in enumerate((("latched", "book", "Latch"), ("bare", "printed", "Bare comparison"))):
         recording = recordings[case]

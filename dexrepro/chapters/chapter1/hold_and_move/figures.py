@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
+from dexrepro.report import style
 
 from .claims import PRINTED
 from .experiment import VIEW
@@ -57,8 +58,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_forces(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(2, 3, height=3.8, sharey="row")
     for column, trial in enumerate(PRINTED):
         for law, role in reversed(LAWS.items()):
@@ -90,8 +89,6 @@ def _draw_forces(recordings: Recordings, metrics: Any, config: Config) -> Drawin
 
 
 def _draw_scene(recording: Recording) -> Drawing:
-    from dexrepro.report import style
-
     figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
     axis.imshow(style.trimmed(recording.images)["b"])
     axis.set_axis_off()
@@ -100,8 +97,6 @@ def _draw_scene(recording: Recording) -> Drawing:
 
 
 def _draw_task(recording: Recording) -> Drawing:
-    from dexrepro.report import style
-
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 6.0))
     grid = figure.add_gridspec(4, 3, height_ratios=(1.4, 1.4, 0.8, 0.6))
     pictures = style.trimmed(recording.images)
@@ -123,8 +118,6 @@ def _draw_task(recording: Recording) -> Drawing:
 
 
 def _draw_limits(metrics: Any) -> Drawing:
-    from dexrepro.report import style
-
     groups = {"as\nprinted": "", "one sample\nlate": "_late", "twice\nas stiff": "_stiff", "own\ngain": "_tuned"}
     figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
     for k, (law, role) in enumerate(LAWS.items()):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "1.D": Figure(
@@ -17,8 +18,6 @@ FIGURES = {
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"ideal", "built", "printed", "growth"} <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.4)
     for case, role in (("ideal", "book"), ("built", "rival"), ("printed", "printed")):
         recording = recordings[case]

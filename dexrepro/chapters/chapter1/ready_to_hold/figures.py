@@ -7,6 +7,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report import style
 
 from .experiment import APPROACH, HOLD, INSTANTS, PITCHED, SHAKEN
 
@@ -48,8 +49,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_field(field: pd.DataFrame, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(1, 3, height=2.25, sharey=True)
     for axis, word, (_, part) in zip(axes, ("far", "near", "touching"), field.groupby("distance", sort=False)):
         y, z = np.unique(part["y"]), np.unique(part["z"])
@@ -77,8 +76,6 @@ def _draw_field(field: pd.DataFrame, config: Config) -> Drawing:
 
 
 def _draw_camera(recording: Recording, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.9)
     still = recording.between(SHAKEN, SHAKEN + 2.0)
     centre, seen = recording["object"][still], 1e3 * (recording["seen"] - recording["object"])[still]
@@ -99,8 +96,6 @@ def _draw_camera(recording: Recording, config: Config) -> Drawing:
 
 def _draw_task(recording: Recording, config: Config, off: float) -> Drawing:
     """off: largest angle between AFR's axis and the direction to DFR [deg]."""
-    from dexrepro.report import style
-
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 8.6))
     grid = figure.add_gridspec(7, 7, height_ratios=(0.7, 1, 1, 1, 0.8, 0.6, 0.8))
     pictures = style.trimmed(recording.images)

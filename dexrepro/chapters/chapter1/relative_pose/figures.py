@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "1.5": Figure(
@@ -30,8 +31,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_moves(moves: pd.DataFrame) -> Drawing:
-    from dexrepro.report import style
-
     durations = sorted(moves["duration"].unique())
     figure, axes = style.subplots(1, len(durations), height=2.0, sharey=True)
     for axis, duration in zip(axes, durations):
@@ -47,8 +46,6 @@ def _draw_moves(moves: pd.DataFrame) -> Drawing:
 
 
 def _draw_triads(triads: Any) -> Drawing:
-    from dexrepro.report import style
-
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 2.2))
     for k, (own, faced) in enumerate(zip(triads[:3].reshape(-1, 3, 3), triads[3:].reshape(-1, 3, 3))):
         axis = figure.add_subplot(1, 3, k + 1, projection="3d")

@@ -8,6 +8,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
 from .experiment import RELEASED, SIZES
@@ -43,8 +44,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_boxes(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 5.6))
     grid = figure.add_gridspec(5, 3, height_ratios=(0.75, 0.75, 0.75, 1, 0.8))
     pictures = style.trimmed(
@@ -78,8 +77,6 @@ def _draw_boxes(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
 
 
 def _draw_gains(gains: Any, recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(1, 5, height=2.0, sharey=True)
     for axis, case in zip(axes, gains):
         recording = recordings[case]

@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Metrics, Recordings
+from dexrepro.report import style
 
 from .experiment import DELAYS
 
@@ -24,8 +25,6 @@ TABLES = {"T1.S": "Variants that change a verdict", "T1.H": "Gains tried for eac
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "carrying" not in recordings:
         return {}
-    from dexrepro.report import style
-
     variants = recordings["carrying"].frames["variants"]
     variants = variants[variants["gain"].isna()]
     figure, axes = style.subplots(1, len(DELAYS), height=2.5, sharey=True)

@@ -7,6 +7,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
 from dexrepro.humans.operator import COMFORTABLE_ROLL, FOREARM_ROLL
+from dexrepro.report import style
 
 from .experiment import nuts
 
@@ -37,8 +38,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_history(recording: Recording, text: str, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(2, 1, height=3.2, sharex=True)
     time = recording.time
     comfort, limit = np.rad2deg(COMFORTABLE_ROLL), np.rad2deg(FOREARM_ROLL)

@@ -10,6 +10,7 @@ import pandas as pd
 from dexrepro.chapters.chapter2 import balloon_pair
 from dexrepro.chapters.chapter2.measures import gains, shown
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "2.9c": Figure(
@@ -62,11 +63,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_path(recording: Recording) -> Drawing:
-    import matplotlib.pyplot as plt
-
-    from dexrepro.report import style
-
-    figure = plt.figure(figsize=(style.ONE_COLUMN, 2.9))
+    figure = style.plt.figure(figsize=(style.ONE_COLUMN, 2.9))
     axes: Any = figure.add_subplot(projection="3d")
     place = 1e3 * recording["leader.tip"][recording.between(0)]
     axes.plot(*place.T, **style.LINES["book"])
@@ -80,8 +77,6 @@ def _draw_path(recording: Recording) -> Drawing:
 
 
 def _draw_result(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(2, 2, height=4.8, width_ratios=(1, 1.6))
     run, shape = recordings["proposed"], config.path
     held = run.between(0)

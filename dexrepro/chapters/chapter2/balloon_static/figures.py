@@ -6,6 +6,7 @@ import numpy as np
 
 from dexrepro.chapters.chapter2 import balloon_pair
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings, changed
+from dexrepro.report import style
 
 FIGURES = {
     "2.9": Figure(
@@ -42,8 +43,6 @@ def _off(config: Config, case: str) -> str:
 
 
 def _draw_setup(recordings: Recordings, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, (photo, front) = style.subplots(1, 2, height=2.7, width_ratios=(1.3, 1))
     photo.imshow(next(iter(recordings.values())).images["contact"])
     photo.axis("off")
@@ -62,8 +61,6 @@ def _draw_setup(recordings: Recordings, config: Config) -> Drawing:
 
 
 def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(2, 2, height=4.4)
     for axes, (first, second), letter in ((grid[0, 0], (0, 2), "a"), (grid[0, 1], (1, 2), "b")):
         for (case, run), line in zip(recordings.items(), ("book", "rival")):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "2.B": Figure(
@@ -18,11 +19,9 @@ FIGURES = {
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    growing = [case for case in recordings if case.startswith("rate")]
+    growing = [case for case in recordings if config.cases[case].study == config.study]
     if not growing or "lyapunov" not in recordings:
         return {}
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.6)
     for case, line in zip(growing, ("book", "rival", "extra1")):
         run, look = recordings[case], style.LINES[line]

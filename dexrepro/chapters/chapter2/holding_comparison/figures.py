@@ -7,6 +7,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter2.measures import gains, shown
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "2.8": Figure(
@@ -27,6 +28,7 @@ NAMES = {
     "force": "F",
     "force_integral": "F (integral)",
     "passive_impedance": "PIm",
+    "told_passive": "PIm, told the start",
     "no_impedance": "NoIm",
     "impedance": "Im",
 }
@@ -77,8 +79,6 @@ def _alike(one: Config, other: Config) -> bool:
 
 
 def _draw_histories(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(4, 2, height=6.9, width_ratios=(3, 1))
     groups = {"a": range(1, 3), "a ": range(3, 9), "b": range(9, 15), "c": range(15, 19)}
     limits = {"a": (-0.2, 6), "a ": (0.6, 1.6), "b": (0.6, 1.6), "c": (2, 10)}
@@ -115,8 +115,6 @@ def _draw_histories(recordings: Recordings, metrics: AllMetrics, config: Config)
 
 
 def _draw_settings(metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     settings = {
         "joint PD": ("s6", "s8"),
         "joint PD,\nno (2.8)": ("s5", "s7"),

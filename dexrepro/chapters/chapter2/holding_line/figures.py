@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "2.5": Figure(
@@ -18,8 +19,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     cases = [case for case in ("case1", "case2") if {f"{case}_with", f"{case}_without"} <= set(recordings)]
     if not cases:
         return {}
-    from dexrepro.report import style
-
     figure, grid = style.subplots(2, len(cases), height=3.4, sharex=True, sharey="row", squeeze=False)
     lines = {"with": ("with (2.8)", "book"), "without": ("without", "plain")}
     texts = ("start {:.0f} mm apart (Case 1)", "partner swings across (Case 2)")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "2.3": Figure(
@@ -27,8 +28,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_forces(forces: pd.DataFrame) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(1, 2, height=2.3)
     for panel, (axis, letter) in zip(axes, (("x", "a"), ("y", "b"))):
         for model, label, line in (("central", "central spring", "book"), ("constant", "constant vector", "printed")):
@@ -50,8 +49,6 @@ def _draw_forces(forces: pd.DataFrame) -> Drawing:
 
 
 def _draw_platform(arms: pd.DataFrame, paths: pd.DataFrame) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(1, 4, height=1.9, width_ratios=(1.45, 1.45, 1, 1))
     for panel, (pose, rows) in zip(axes, arms.groupby("pose")):
         for arm, line in (("leader", "plain"), ("follower", "book")):

@@ -11,6 +11,7 @@ from dexrepro.chapters.chapter3.measures import headed
 from dexrepro.chapters.chapter3.scene import FILMED
 from dexrepro.control.momentum_observer import MomentumObserver
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "3.1": Figure(
@@ -54,8 +55,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_steps() -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.3)
     step, unit = 1e-3, np.eye(1)
     for gain, line in zip((5, 20, 50, 200), ("extra1", "rival", "book", "extra2")):
@@ -74,8 +73,6 @@ def _draw_steps() -> Drawing:
 
 
 def _draw_torques(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     recording, push = recordings["plus"], config.cases["plus"].push
     figure, (top, middle, bottom) = style.subplots(3, 1, height=5.0, sharex=True)
     busiest = np.abs(recording["external"]).max(axis=0).argsort()[::-1][:3]
@@ -110,8 +107,6 @@ CURVES = {
 
 
 def _draw_effect(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.9)
     push = config.cases["plus"].push
     for case, (label, line) in CURVES.items():
@@ -135,8 +130,6 @@ def _draw_effect(recordings: Recordings, metrics: Any, config: Config) -> Drawin
 
 
 def _draw_sweep(table: pd.DataFrame) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.4)
     axes.plot(
         table.gain, 100 * table.clean_error, marker="o", markersize=3, label="exact momentum", **style.LINES["book"]

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Metrics, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import NAMES
 
@@ -40,8 +41,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_training(recording: Recording, found: Metrics) -> Drawing:
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.5, width_ratios=(1.4, 1))
     epochs = recording.frames["epochs"]
     left.plot(epochs.epoch, 100 * epochs.train, label="training scenes", **style.LINES["book"])
@@ -63,8 +62,6 @@ def _draw_training(recording: Recording, found: Metrics) -> Drawing:
 
 
 def _draw_example(recording: Recording) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.7)
     axes.imshow(recording.images["scene"])
     grasps = recording.frames["grasps"]

@@ -8,6 +8,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Film, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report import style
 
 FIGURES = {
     "3.D": Figure(
@@ -27,8 +28,6 @@ FILM = Film(
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     cases = [case for case in ("chosen", "random") if case in recordings]
     if len(cases) < 2:
         return {}

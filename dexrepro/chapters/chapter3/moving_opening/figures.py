@@ -7,9 +7,9 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.chapters.chapter3 import drawings
-from dexrepro.chapters.chapter3.measures import headed
 from dexrepro.chapters.chapter3.scene import FILMED
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Metrics, Recording, Recordings
+from dexrepro.report import style
 
 _SHOWN = "The simulated arm and the moving lid {} after its movement began. The book shows photographs."
 FIGURES = {
@@ -51,8 +51,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_path(run: Recording, found: Metrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.4)
     x, y, z = run["centre"].T
     left.plot(x, y, **style.LINES["reference"])
@@ -78,8 +76,6 @@ CURVES = {
 
 
 def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.7)
     for case, (label, line) in CURVES.items():
         if case in recordings:
@@ -100,9 +96,4 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    rows = [
-        {"case": case, "reading": drawings.describe(config.cases[case]), **values}
-        for case, values in metrics.items()
-        if case in config.cases
-    ]
-    return {"T3.D": headed(rows)}
+    return {"T3.D": drawings.by_reading(metrics, config)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "3.A": Figure(
@@ -28,8 +29,6 @@ CURVES = {
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     if not {"printed", "linear"} <= set(recordings):
         return {}
     figure, axes = style.subplots(height=2.8)

@@ -9,6 +9,7 @@ import pandas as pd
 
 from dexrepro.control.global_adaptive import Switch
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
 FIGURES = {
@@ -27,8 +28,6 @@ TABLES = {
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     figure, ((inside, outside), (share, error)) = style.subplots(2, 2, height=3.8)
     law = next(iter(config.cases.values())).law
     inner, outer = law.switch.inner, law.switch.outer
@@ -56,8 +55,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_run(recordings: Recordings, share: Any, error: Any) -> None:
-    from dexrepro.report import style
-
     base = recordings["base"]
     now = base.time <= 3.0
     share.plot(base.time[now], base["share"][now], **style.LINES["book"])

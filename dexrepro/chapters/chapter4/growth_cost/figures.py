@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "4.A": Figure(
@@ -27,8 +28,6 @@ LABELS = {
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     if set(recordings) < set(LABELS):
         return {}
     figure, (left, right) = style.subplots(1, 2, height=2.7)

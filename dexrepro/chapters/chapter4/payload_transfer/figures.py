@@ -8,6 +8,7 @@ import numpy as np
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
 FIGURES = {
@@ -54,8 +55,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_phases(recording: Recording, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(1, 3, height=2.6)
     shown = style.trimmed(recording.images)
     for k, (panel, where) in enumerate(zip(axes, ("near B", "near E", "from A to D")), 1):
@@ -68,8 +67,6 @@ def _draw_phases(recording: Recording, config: Config) -> Drawing:
 
 
 def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(2, 3, height=4.4)
     bound = config.cases["reuse"].law.bound
     length = sum(config.cases["reuse"].task.times)
@@ -99,8 +96,6 @@ def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) ->
 
 
 def _draw_bars(figure: Any, axes: Any, metrics: AllMetrics) -> None:
-    from dexrepro.report import style
-
     grid = axes[1, 1].get_gridspec()
     for panel in axes[1, 1:]:
         panel.remove()

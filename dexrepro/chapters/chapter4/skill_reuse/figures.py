@@ -282,9 +282,7 @@ def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
 
 
 def _count_axes() -> Any:
-    import matplotlib.pyplot as plt
-
-    figure = plt.figure(figsize=(style.TWO_COLUMNS, 3.8))
+    figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 3.8))
     grid = figure.add_gridspec(2, 5)
     top = figure.add_subplot(grid[0, :])
     first = figure.add_subplot(grid[1, 0])

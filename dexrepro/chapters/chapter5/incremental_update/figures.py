@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import LOST
 
@@ -39,8 +40,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_mechanism(recording: Recording) -> Drawing:
-    from dexrepro.report import style
-
     frame = recording.frames["blocks"]
     instants = np.linspace(0, recording.time[-1], len(frame))
     panels = {
@@ -58,7 +57,7 @@ def _draw_mechanism(recording: Recording) -> Drawing:
     total = frame.filter(regex=r"^(old|modified|new)\d+$").sum(axis=1)
     grid[1, 0].plot(instants, total, **style.LINES["book"])
     grid[1, 0].plot(instants, frame["phase0"], **style.LINES["reference"])
-    grid[1, 0].annotate("sum of all features = phase s", (0.3, 0.75), xycoords="axes fraction", fontsize=6.5)
+    grid[1, 0].annotate("all features sum\nto the phase s", (0.95, 0.6), xycoords="axes fraction", ha="right")
     for axes in grid[1]:
         axes.set_xlabel("Time [s]")
     for axes in grid[:, 0]:
@@ -68,8 +67,6 @@ def _draw_mechanism(recording: Recording) -> Drawing:
 
 
 def _draw_cost(cost: pd.DataFrame, drift: pd.DataFrame) -> Drawing:
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.3)
     left.plot(cost.features, 1e-6 * cost.anew, label="solved anew", marker="s", ms=3, **style.LINES["plain"])
     left.plot(cost.features, 1e-6 * cost["update"], label="updated", marker="o", ms=3, **style.LINES["book"])

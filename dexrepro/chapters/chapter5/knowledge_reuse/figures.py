@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "5.E": Figure(
@@ -21,8 +22,6 @@ TABLES = {"T5.I": "RMS joint error [mrad] with weights kept, learned anew, or ke
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     if not {"kept", "anew"} <= set(recordings):
         return {}
     names = list(config.hand.sequence)

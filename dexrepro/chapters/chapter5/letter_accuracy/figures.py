@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Metrics, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import METHODS
 
@@ -39,8 +40,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_paths(recording: Recording, metrics: Metrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     lines = {"dmp": "plain", "dmp_plus": "rival", "idmp": "book"}
     most, counts = max(config.features.counts), config.kernels.counts
     figure, grid = style.subplots(2, 4, height=4.1, squeeze=False)
@@ -75,8 +74,6 @@ def _power(value: float) -> str:
 
 
 def _draw_features(recording: Recording, metrics: Metrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     draws, added = recording.frames["draws"], config.features.counts
     figure, axes = style.subplots(1, len(config.kernels.counts), height=2.8, sharey=True, squeeze=False)
     for panel, count in zip(axes[0], config.kernels.counts):

@@ -10,6 +10,7 @@ import pandas as pd
 from dexrepro.chapters.chapter5 import crossing, pen
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report import style
 
 from .experiment import crossings
 
@@ -39,8 +40,6 @@ FILM = Film(
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     figures = {}
     if {"film2", "film3"} <= set(recordings):
         figure, axes = style.plt.subplots(1, 1, figsize=(style.ONE_COLUMN, 2.5))
@@ -55,8 +54,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _filmstrip(recordings: Recordings, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(2, len(config.film), height=3.2)
     film = [(case, k) for case in ("film2", "film3") for k in range(len(config.film))]
     pictures = style.trimmed({(case, k): recordings[case].images[f"at{k}"] for case, k in film})
@@ -70,8 +67,6 @@ def _filmstrip(recordings: Recordings, config: Config) -> Drawing:
 
 
 def _draw_runs(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.3, width=style.TWO_COLUMNS)
     places = crossing.goals(config)
     cases = crossings(config)

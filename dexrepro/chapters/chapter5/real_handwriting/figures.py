@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Metrics, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import of_shapes
 
@@ -34,8 +35,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 def _draw(recording: Recording, metrics: Metrics, config: Config) -> Drawing:
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
-
-    from dexrepro.report import style
 
     few, many = min(config.kernels.counts), max(config.kernels.counts)
     ratio = f"n{many}.idmp{max(config.features.counts)}.ratio"

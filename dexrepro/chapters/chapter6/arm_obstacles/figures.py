@@ -8,6 +8,7 @@ import pandas as pd
 from dexrepro.arrays import Array
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Metrics, Recording, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report import style
 
 from .experiment import BOXES, TOP
 
@@ -19,12 +20,12 @@ FIGURES = {
     ),
     "6.4": Figure(
         "Simulated arm on the learned path at five instants (contacts off) and the smallest distance of the whole arm "
-        "to each box. The book shows photographs.",
+        "to each box, below 15 cm. The book shows photographs.",
         "Five pictures of the arm among the boxes, and its distance to each over time, on the learned path.",
     ),
     "6.5": Figure(
         "Simulated arm on the constrained path at five instants and the smallest distance of the whole arm to each "
-        "box.",
+        "box, below 15 cm.",
         "Five pictures of the arm among the boxes, and its distance to each over time, on the constrained path.",
     ),
 }
@@ -61,8 +62,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_scene(original: Recording, constrained: Recording, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.0)
     image = constrained.images["top"]
     axes.imshow(image)
@@ -90,8 +89,6 @@ def _pixels(points: Array, shape: tuple[int, ...]) -> Array:
 
 
 def _draw_run(run: Recording, numbers: Metrics) -> Drawing:
-    from dexrepro.report import style
-
     shots = style.trimmed({name: run.images[name] for name in sorted(run.images) if name != "top"})
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 3.5))
     grid = figure.add_gridspec(2, len(shots), height_ratios=[1.1, 1.3])
@@ -105,11 +102,13 @@ def _draw_run(run: Recording, numbers: Metrics) -> Drawing:
         axes.plot(run.time, 100 * run[f"distance_{name}"], label=f"{name} box", **style.LINES[line])
     axes.axhline(0, **style.LINES["reference"])
     axes.set(xlabel="Time [s]", ylabel="Distance of arm [cm]")
-    axes.legend(loc="upper center")
+    axes.set_ylim(top=15)
+    axes.legend(loc="upper center", ncols=3, bbox_to_anchor=(0.5, 1.2))
     closest = {name: 100 * float(numbers[f"distance_{name}"] or 0) for name in BOXES}
     if closest["new"] < 0:
         text = f"On the learned path the arm runs {-closest['new']:.1f} cm into the new box"
     else:
-        text = f"On the constrained path the whole arm clears the boxes by {min(closest.values()):.1f} cm or more"
+        least = style.at_least(min(closest.values()), 1)
+        text = f"On the constrained path the whole arm clears the boxes by {least} cm or more"
     style.title(figure, text)
     return figure

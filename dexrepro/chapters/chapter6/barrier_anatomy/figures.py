@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "6.B": Figure(
@@ -31,8 +32,6 @@ TAU1 = (0, (5, 1.5))
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"printed", "feedforward", "tau1_feedforward"} <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     figure, ((a, b), (c, d)) = style.subplots(2, 2, height=4.4)
     for case, line, end in (("feedforward", "-", "duration"), ("tau1_feedforward", TAU1, "1 s")):
         share = recordings[case].frames["share"]

@@ -7,6 +7,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Film, Recordings
 from dexrepro.physics.rendering import Camera
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
 FIGURES = {
@@ -39,8 +40,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"constrained", "original"} <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     runs = {"constrained": recordings["constrained"], "original": recordings["original"]}
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.2))
     halves = figure.add_gridspec(2, 1, height_ratios=[2, 1.5])

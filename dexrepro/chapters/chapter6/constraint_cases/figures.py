@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 from .experiment import constraint_of
 
@@ -39,8 +40,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     figure, ((inner, outer), (right, close)) = style.subplots(2, 2, height=4.2)
     lines = ("extra1", "book", "rival", "extra2", "printed")
     fallen = []

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "6.C": Figure(
@@ -54,8 +55,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     }
     if not set(still) | set(moving) <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     figure, (left, right) = style.subplots(1, 2, height=2.8)
     shown = config.cases["still_printed"]
     angle = np.linspace(0, 2 * np.pi, 100)

@@ -7,6 +7,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter6 import plane
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "6.D": Figure(
@@ -59,8 +60,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     }
     if not set(lines) <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     figure, ((a, b), (c, d)) = style.subplots(2, 2, height=4.6)
     plane.draw_map(a, config.cases["constrained"], reference=False)
     for case, line in lines.items():

@@ -9,6 +9,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter6 import plane
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "6.2d": Figure(
@@ -47,8 +48,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     rows = {
         r"$\tau$ = duration": {"shown": "feedforward", **{law: law for law in LINES}},
         r"$\tau$ = 1 s": {

@@ -10,6 +10,7 @@ import pandas as pd
 from dexrepro.arrays import Array
 from dexrepro.chapters.chapter6 import bimanual
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Metrics, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import SIDES
 
@@ -107,8 +108,6 @@ def _instants(run: Recording, settings: Config) -> Array:
 
 
 def _draw_person(run: Recording, settings: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(1, 6, height=1.4, sharex=True, sharey=True)
     joints = _joints(run, "truth")
     for letter, axes, index in zip("abcdef", grid, _instants(run, settings)):
@@ -131,8 +130,6 @@ def _draw_person(run: Recording, settings: Config) -> Drawing:
 
 
 def _draw_spread(run: Recording, numbers: Metrics) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(1, 4, height=2.4, gridspec_kw={"width_ratios": [1, 1, 1, 1]})
     frame, percentiles = run.frames["spread"], run.frames["percentiles"]
     for letter, name, axes in zip("abc", ("wrist", "elbow", "shoulder"), grid):
@@ -157,8 +154,6 @@ def _draw_spread(run: Recording, numbers: Metrics) -> Drawing:
 
 
 def _draw_stages(run: Recording) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(height=1.1)
     axes.set(xlim=(0, 10), ylim=(0, 1))
     axes.axis("off")
@@ -176,8 +171,6 @@ def _draw_stages(run: Recording) -> Drawing:
 
 
 def _draw_paths(run: Recording, settings: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, panels = style.subplots(2, 3, height=3.6, sharex=True, sharey=True)
     joints, original = _joints(run, "joints"), _joints(run, "original")
     front = (0, 2)
@@ -208,8 +201,6 @@ def _draw_paths(run: Recording, settings: Config) -> Drawing:
 
 
 def _draw_lengths(run: Recording, numbers: Metrics, settings: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, panels = style.subplots(1, 2, height=2.4, sharey=True)
     found = {kind: bimanual.lengths(_joints(run, kind)) for kind in ("joints", "original")}
     s, margin = settings.skeleton, settings.link_margin
@@ -232,8 +223,6 @@ def _draw_lengths(run: Recording, numbers: Metrics, settings: Config) -> Drawing
 
 
 def _draw_hands(run: Recording, numbers: Metrics, settings: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.3)
     nominal = settings.skeleton.box_length
     style.band(axes, run.time[[0, -1]], nominal - 1, nominal + 1)

@@ -10,6 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "7.9": Figure(
@@ -28,7 +29,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if "main" not in recordings:
         return {}
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     recording, case = recordings["main"], config.cases.main
     task, old = skills.Reach(case.task.start, case.task.goal), skills.reach(case)
@@ -66,8 +66,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     style.panel(
         plans[1, 0], "c", f"left-forward ({case.direction:g}), {style.at_least(worst['clearance_chosen'], 2)} cm clear"
     )
-    draw_stiffness(level, recording)
-    style.panel(level, "d", "stiffness for the 4 cm obstacle")
+    draw_stiffness(level, recording, case)
+    style.panel(level, "d", f"stiffness for the {case.task.height:g} cm obstacle")
     style.title(
         figure,
         f"Three directions clear the new obstacle by {style.at_least(worst['clearance_three'], 1)} cm; in between "
@@ -79,7 +79,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 def draw_ordinary(plan: Any, side: Any, recordings: Recordings, case: Config, obstacle: Any) -> None:
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     task, old = skills.Reach(case.task.start, case.task.goal), skills.reach(case)
     curves = {"old task": ("main", "old", old, "plain"), "new task": ("main", "new", task, "book"),
@@ -97,8 +96,6 @@ def draw_ordinary(plan: Any, side: Any, recordings: Recordings, case: Config, ob
 
 
 def draw_clearance(panel: Any, recording: Recording, case: Config, obstacle: Any) -> None:
-    from dexrepro.report import style
-
     clearance = obstacle.clearance(skills.by_path(recording["between"]), case.scene.tool_radius)
     panel.plot(case.between, clearance, marker=".", color="#888888")
     chosen = obstacle.clearance(recording["chosen"], case.scene.tool_radius)
@@ -110,12 +107,11 @@ def draw_clearance(panel: Any, recording: Recording, case: Config, obstacle: Any
               ylim=(-0.8, 1.5))  # fmt: skip
 
 
-def draw_stiffness(panel: Any, recording: Recording) -> None:
-    from dexrepro.report import style
-
+def draw_stiffness(panel: Any, recording: Recording, case: Config) -> None:
     style.band(panel, recording.time, recording["stiffness_low"], recording["stiffness_tall"])
-    panel.annotate("2 cm", (4.9, recording["stiffness_low"][-1]), fontsize=6.5, va="top", ha="right")
-    panel.annotate("8 cm", (4.9, recording["stiffness_tall"][-1]), fontsize=6.5, va="bottom", ha="right")
+    for name, side in (("low", "top"), ("tall", "bottom")):
+        place = (0.98 * recording.time[-1], recording[f"stiffness_{name}"][-1])
+        panel.annotate(f"{case.scene[name]:g} cm", place, fontsize=8, va=side, ha="right")
     panel.plot(recording.time, recording["stiffness"], label="average ends (as printed)", **style.LINES["book"])
     panel.plot(recording.time, recording["stiffness_fuzzy"], label="fuzzy ends", **style.LINES["rival"])
     panel.plot(recording.time, recording["stiffness_truth"], label="the person's own", **style.LINES["reference"])

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 from .experiment import CHATTER, FLOOR, gains
 
@@ -25,8 +26,6 @@ TABLES = {"T7.B": "Stability against gain, period and model, predicted and measu
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     rows = gains(metrics, config)
     if not rows:
         return {}

@@ -10,6 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import PICTURES
 
@@ -44,8 +45,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def draw_pictures(recording: Recording) -> Drawing:
-    from dexrepro.report import style
-
     images = style.trimmed(recording.images)
     words = {"a": "grasp", "f": "release"}
     figure, axes = style.subplots(2, 3, height=4.6)
@@ -59,7 +58,6 @@ def draw_pictures(recording: Recording) -> Drawing:
 
 def draw_tracking(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> Drawing:
     from dexrepro.chapters.chapter7 import pictures as views
-    from dexrepro.report import style
 
     recording, case = recordings["muscle"], config.cases.muscle
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.4))

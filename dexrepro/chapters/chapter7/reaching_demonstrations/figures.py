@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import paths_of, traces_of
 
@@ -57,8 +57,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def draw_pictures(images: Mapping[str, Any]) -> Drawings:
-    from dexrepro.report import style
-
     shown = style.trimmed({name: image for name, image in images.items() if name != "platform"})
     platform, axes = style.subplots(width=style.ONE_COLUMN, height=2.5)
     axes.imshow(style.trimmed({"platform": images["platform"]})["platform"])
@@ -76,7 +74,6 @@ def draw_pictures(images: Mapping[str, Any]) -> Drawings:
 
 def draw_paths(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> Drawing:
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     recording, task = recordings["corrected"], skills.reach(config)
     figure, plans, sides = pictures.plans_over_sides(3, height=5.6)
@@ -120,7 +117,7 @@ def draw_paths(recordings: Recordings, metrics: Mapping[str, Any], config: Confi
     return figure
 
 
-def progress(axes: Axes, time: np.ndarray, paths: np.ndarray, reach: skills.Reach, **line: Any) -> None:
+def progress(axes: Any, time: np.ndarray, paths: np.ndarray, reach: skills.Reach, **line: Any) -> None:
     """How far paths (N, 3) or (k, N, 3) [cm] are along the straight line from start to goal, over time."""
     for path in np.reshape(paths, (-1, *np.shape(paths)[-2:])):
         axes.plot(time, (path - reach.ends[0]) @ reach.axes[0], **line)
@@ -128,7 +125,6 @@ def progress(axes: Axes, time: np.ndarray, paths: np.ndarray, reach: skills.Reac
 
 def draw_stiffness(recording: Recording, found: Mapping[str, Any], config: Config) -> Drawing:
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     figure, axes = style.subplots(2, 2, height=3.3, sharex=True, sharey=True)
     traces = traces_of(recording, config)

@@ -9,6 +9,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 from .experiment import shown
 
@@ -28,7 +29,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if "frozen" not in recordings:
         return {}
     from dexrepro.chapters.chapter7 import pictures
-    from dexrepro.report import style
 
     recording, case = recordings["frozen"], config.cases.frozen
     frozen: Mapping[str, Any] = metrics["frozen"]

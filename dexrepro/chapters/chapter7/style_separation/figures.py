@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 FIGURES = {
     "7.A": Figure(
@@ -24,8 +25,6 @@ TABLES = {"T7.A": "Reactions represented by a common basis and style parameters"
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if not {"per_coordinate", "shared"} <= set(recordings):
         return {}
-    from dexrepro.report import style
-
     numbers: Mapping[str, Any] = metrics["per_coordinate"]
     figure, axes = style.subplots(1, 3, height=2.6)
     pairs = {"per_coordinate": ("book", axes[0]), "non_separable": ("extra1", axes[0]), "shared": ("book", axes[1])}

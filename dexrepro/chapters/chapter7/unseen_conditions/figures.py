@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 from .experiment import METHODS
 
@@ -28,8 +29,6 @@ TABLES = {"T7.3": "Reactions to conditions that were never shown"}
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     if "main" not in recordings:
         return {}
-    from dexrepro.report import style
-
     left_out = recordings["main"].frames["left_out"]
     values: Mapping[str, Any] = metrics["main"]
     figure, (one, many) = style.subplots(1, 2, height=2.9)

@@ -10,6 +10,7 @@ import pandas as pd
 
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
 FIGURES = {
@@ -70,8 +71,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(4, 2, height=7.2, sharex="row")
     lines = {"broad": ("BFNN", "book"), "fuzzy": ("FNN", "rival")}
     for axis, (column, letter) in enumerate(zip(grid.T, "xy")):
@@ -101,14 +100,13 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Drawing:
     unit = metrics["summary"]["ratio_unit_x"] if "summary" in metrics else float("nan")
     style.title(
         figure,
-        f"Error of FNN over that of BFNN in x, 5 to 10 s: {unit:.3f} as printed, {ratio:.2f} with tuned rates",
+        f"Error of FNN over that of BFNN in x, {config.settled:g} to {config.early:g} s: {unit:.3f} as printed, "
+        f"{ratio:.2f} with tuned rates",
     )
     return figure
 
 
 def _draw_nodes(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, row = style.subplots(1, 3, height=2.4, sharey=True)
     for index, (axes, case) in enumerate(zip(row, THRESHOLDS)):
         run = recordings[case]
@@ -132,8 +130,6 @@ def _draw_nodes(recordings: Recordings, metrics: Any, config: Config) -> Drawing
 
 
 def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     lines = {
         "friction_broad": ("BFNN", "book"),
         "friction_fuzzy": ("FNN", "rival"),
@@ -165,13 +161,11 @@ def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) 
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=6)
     errors = "; ".join(f"{label} {metrics[case]['early_x']:.2g}" for case, (label, _) in lines.items())
-    style.title(figure, f"RMS error in x under friction, 5 to 10 s [mm]: {errors}")
+    style.title(figure, f"RMS error in x under friction, {config.settled:g} to {config.early:g} s [mm]: {errors}")
     return figure
 
 
 def _draw_centres(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, row = style.subplots(1, 3, height=2.9, sharex=True, sharey=True)
     levels = config.networks.position_levels
     for axes, case in zip(row, THRESHOLDS):
@@ -189,8 +183,6 @@ def _draw_centres(recordings: Recordings, metrics: AllMetrics, config: Config) -
 
 
 def _draw_gains(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     marks = {
         "broad": ("broad", style.BOOK, "o"),
         "broad_plain": ("grown, no cos and sin", style.EXTRA[2], "D"),
@@ -256,7 +248,7 @@ VARIANTS = (
     Variant("C8.07", "equal adaptation gain, x", "early_x", ("friction_broad", "friction_fuzzy_matched"), _FRICTION),
     Variant("C8.08", "H-infinity with integral action", "early_x", _INTEGRAL, _STATIC),
     Variant("C8.08", "rate 1", "early_y", ("friction_broad_unit", "friction_hinf"), _STATIC),
-    Variant("C8.08", "every method the best of 16 settings", "early_x", ("tuned_broad", "tuned_hinf"), _STATIC),
+    Variant("C8.08", "every method the best of its search", "early_x", ("tuned_broad", "tuned_hinf"), _STATIC),
 )
 
 

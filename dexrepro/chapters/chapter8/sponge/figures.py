@@ -13,6 +13,7 @@ from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
+from dexrepro.report import style
 
 from .experiment import VIEW
 
@@ -73,8 +74,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def _phases(axes: Any, run: Recording, names: bool = True) -> None:
-    from dexrepro.report import style
-
     for number, (phase, colour) in enumerate(
         ((EXPLORING, "#EAF2F8"), (SOLVING, "#F6EFE0"), (TRANSFERRING, "#E9F5EC")), 1
     ):
@@ -85,14 +84,14 @@ def _phases(axes: Any, run: Recording, names: bool = True) -> None:
 
 
 def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     run, values = recordings["learned"], metrics["learned"]
     depth = 1e3 * np.maximum(config.cases.learned.sponge.surface - run["arm.tip"][:, 2], 0)
     instants = sorted((float(name.removeprefix("at_").removesuffix("s")), name) for name in run.images)
     figure, row = style.subplots(1, len(instants), height=1.8)
     for axes, (instant, name) in zip(np.atleast_1d(row), instants):
-        axes.imshow(run.images[name])
+        image = run.images[name]
+        top = 0.1 if instant == instants[0][0] else 0.0  # the others are near views of where it touches
+        axes.imshow(image[round(top * len(image)) : round((top + 0.78) * len(image))])
         axes.set_axis_off()
         pressed = depth[np.abs(run.time - instant).argmin()]
         axes.set_title(f"{instant:g} s" + (f": {pressed:.0f} mm deep" if pressed else ""))
@@ -105,8 +104,6 @@ def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) 
 
 
 def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure = style.plt.figure(figsize=(style.TWO_COLUMNS, 4.0))
     grid = figure.add_gridspec(2, 3)
     depth, aside, error = (figure.add_subplot(place) for place in (grid[:, :2], grid[0, 2], grid[1, 2]))
@@ -158,8 +155,6 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
 
 
 def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     learned, lqr = recordings["learned"], recordings["lqr"]
     steps = learned.frames["iterates"]
     figure, row = style.subplots(1, 2, height=2.4)
@@ -177,8 +172,6 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
 
 
 def _draw_stiffness(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     cost = InteractionCost(config.cost.tracking, config.cost.effort, config.cost.output)
     commanded = 1e3 * (config.sponge.surface - config.path.end)
     stiffness = np.geomspace(100, 1000, 100)

@@ -13,6 +13,7 @@ from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING, soft_transfer
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
+from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
 from .experiment import objects
@@ -84,8 +85,6 @@ def _cost(config: Config) -> InteractionCost:
 
 
 def _phases(axes: Any, run: Recording, names: bool = True) -> None:
-    from dexrepro.report import style
-
     colours = {EXPLORING: "#EAF2F8", SOLVING: "#F6EFE0", TRANSFERRING: "#E9F5EC"}
     for number, (phase, colour) in enumerate(colours.items(), 1):
         inside = run.time[run["phase"] == phase]
@@ -95,8 +94,6 @@ def _phases(axes: Any, run: Recording, names: bool = True) -> None:
 
 
 def _draw_transfer(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     initial = np.array(config.interaction.gain.initial, float)
     optimal = np.array([metrics["soft"]["gain_x"], metrics["soft"]["gain_s"]])
     progress = np.linspace(0.0, 1.0, 201)
@@ -119,8 +116,6 @@ def _draw_transfer(recordings: Recordings, metrics: AllMetrics, config: Config) 
 
 
 def _draw_scene(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     run = recordings["soft"]
     times = (0.0, metrics["soft"]["touched_at"], 15.0)
     figure, axes = style.subplots(1, 1, width=style.ONE_COLUMN, height=3.0)
@@ -143,8 +138,6 @@ def _draw_scene(recordings: Recordings, metrics: Any, config: Config) -> Drawing
 
 
 def _draw_contact(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     figure, grid = style.subplots(2, 2, height=4.8)
     (place, error), (force, static) = grid
     start, end = metrics["soft"]["touched_at"] - 0.6, metrics["soft"]["left_at"] + 0.6
@@ -185,8 +178,6 @@ def _draw_contact(recordings: Recordings, metrics: Any, config: Config) -> Drawi
 
 
 def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     soft, lqr, steps = recordings["soft"], recordings["lqr"], recordings["soft"].frames["iterates"]
     figure, grid = style.subplots(2, 2, height=4.0, sharex="col")
     start, end = metrics["soft"]["touched_at"], metrics["soft"]["left_at"]
@@ -216,8 +207,6 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
 
 
 def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
-    from dexrepro.report import style
-
     found = sorted(
         (config.cases[name].object.stiffness, metrics[name]) for name in objects(config) if name in recordings
     )
@@ -250,7 +239,8 @@ def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawi
         style.panel(axes, letter, name)
     worst = 100.0 * (metrics.get("summary", {}).get("worst_gain_error") or float("nan"))
     style.title(
-        figure, f"The learned gain is optimal within {worst:.1f} % from {stiffness[0]:g} to {stiffness[-1]:g} N/m"
+        figure,
+        f"The learned gain is optimal within {style.at_most(worst, 1)} % for {stiffness[0]:g} to {stiffness[-1]:g} N/m",
     )
     return figure
 

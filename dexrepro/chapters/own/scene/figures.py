@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
+from dexrepro.report import style
 
 from .experiment import distance
 
@@ -16,8 +17,6 @@ TABLES = {"own.T": "Tracking, force and torque of every case"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    from dexrepro.report import style
-
     figure, (plan, error, force) = style.subplots(1, 3, height=2.5)
     ranges = np.ptp(np.vstack([run["arm.tip"] for run in recordings.values()]), axis=0)
     across, up = sorted(np.argsort(-ranges, kind="stable")[:2])

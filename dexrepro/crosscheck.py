@@ -1,0 +1,150 @@
+"""The book under a second engine: which numbers and verdicts are PyBullet's own.
+
+PyBullet's side are the stored baselines (``dexrepro check`` says whether they are today's); the other side is run here,
+as any ``engine=…``. A number differs where it is outside its baseline's tolerance, and matters where it is also outside
+the spread of the study's samples: then another engine moves it more than what the book does not print.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dexrepro import chapters
+from dexrepro.baselines import Baseline, agrees, baseline_dir
+from dexrepro.errors import InputError
+from dexrepro.plan import Plan, plan_chapter, uses_engine
+from dexrepro.progress import Progress
+from dexrepro.runner import flat, run_plans
+from dexrepro.storage import read_json, write_json
+
+OTHER = "mujoco"
+SPREAD = (0.05, 0.95)  # quantiles of a number among the samples of a study
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A number outside its tolerance: both values, and the samples' range (None: no study has it)."""
+
+    name: str
+    reference: float | None
+    other: float | None
+    spread: tuple[float, float] | None
+
+    @property
+    def matters(self) -> bool:
+        """Whether no sample of the study spreads as far."""
+        if self.spread is None or self.other is None:
+            return True
+        low, high = self.spread
+        return not low <= self.other <= high
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One experiment under both engines: how many numbers were compared, which differ, and each claim's verdicts."""
+
+    chapter: str
+    experiment: str
+    version: str
+    compared: int
+    metrics: list[Difference] = field(default_factory=list)
+    claims: dict[str, tuple[str, str]] = field(default_factory=dict)
+
+    @property
+    def turned(self) -> list[str]:
+        """Claims whose verdicts differ."""
+        return [key for key, (reference, other) in self.claims.items() if reference != other]
+
+
+def run(
+    chapter: str, only: Sequence[str], results: Path, workers: int | None, progress: Progress | None = None
+) -> list[Comparison]:
+    """Run what simulates arms under the other engine and compare. Raises InputError where a case fails."""
+    words = [f"results='{results}'", f"engine={OTHER}", *([f"only=[{','.join(only)}]"] if only else [])]
+    loaded = chapters.load(chapter)
+    plans = [plan for plan in plan_chapter(chapter, words)[0] if uses_engine(loaded.experiment(plan.experiment))]
+    outcome = run_plans(plans, workers=workers, force=False, progress=progress)
+    if outcome.failures:
+        raise InputError("; ".join(f"{name} failed: {text}" for name, text in outcome.failures.items()))
+    return [compare(plan, outcome.folders[plan.experiment]) for plan in plans]
+
+
+def compare(plan: Plan, folder: Path) -> Comparison:
+    """A result of the other engine beside the stored baseline."""
+    baseline, made = Baseline.of(plan.chapter, plan.experiment), read_json(folder / "metrics.json")
+    outside = [name for name, entry in baseline.metrics.items() if not agrees(made.get(name), entry)]
+    samples = _samples(plan) if outside else []
+    differences = [
+        Difference(name, baseline.metrics[name]["value"], made.get(name), _spread([row.get(name) for row in samples]))
+        for name in outside
+    ]
+    verdicts = {claim.id: claim.evaluate(made).verdict for claim in chapters.load(plan.chapter).claims}
+    claims = {key: (verdict, verdicts.get(key, "")) for key, verdict in baseline.claims.items()}
+    version = plan.versions[OTHER]
+    return Comparison(plan.chapter, plan.experiment, version, len(baseline.metrics), differences, claims)
+
+
+def _samples(plan: Plan) -> list[Mapping[str, float | None]]:
+    from dexrepro.study import shipped_samples  # which asks here whether samples of the other engine count
+
+    return [
+        flat(plan.experiment, {case: row.get("metrics", {}) for case, row in entry["cases"].items()})
+        for entry in shipped_samples(plan.experiment)
+    ]
+
+
+def _spread(values: Sequence[float | None]) -> tuple[float, float] | None:
+    known = [value for value in values if value is not None]
+    if len(known) < 2:
+        return None
+    low, high = np.quantile(known, SPREAD).tolist()
+    return low, high
+
+
+def table(results: Path, shipped: bool = False) -> Path:
+    """Where the comparisons are kept: among the results, or beside the baselines that are shipped."""
+    return baseline_dir() / "crosscheck.json" if shipped else results / "crosscheck" / "crosscheck.json"
+
+
+def keep(found: Sequence[Comparison], path: Path) -> None:
+    """Put comparisons in the place of those of the same experiments."""
+    rows = {item.experiment: item for item in (*stored(path), *found)}
+    ordered = sorted(rows.values(), key=lambda item: (item.chapter, item.experiment))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_json(path, [asdict(item) for item in ordered])
+
+
+def stored(path: Path) -> list[Comparison]:
+    """The comparisons in a file, none where there is no file. Raises InputError where it is damaged."""
+    if not path.exists():
+        return []
+    try:
+        return [_of(row) for row in read_json(path)]
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        raise InputError(f"{path} is no table of comparisons ({' '.join(str(error).split())})") from error
+
+
+def _of(row: Mapping[str, Any]) -> Comparison:
+    metrics = [Difference(**{**item, "spread": item["spread"] and tuple(item["spread"])}) for item in row["metrics"]]
+    claims = {key: (reference, other) for key, (reference, other) in row["claims"].items()}
+    return Comparison(**{**row, "metrics": metrics, "claims": claims})
+
+
+def verdicts(results: Path) -> dict[str, tuple[str, str]]:
+    """The verdict of every claim under both engines, shipped or made here, where it is known."""
+    return {key: pair for item in _known(results).values() for key, pair in item.claims.items()}
+
+
+def agrees_on(experiment: str, results: Path) -> bool:
+    """Whether every claim of an experiment is known to have one verdict under both engines."""
+    item = _known(results).get(experiment)
+    return item is not None and not item.turned
+
+
+def _known(results: Path) -> dict[str, Comparison]:
+    return {item.experiment: item for place in (True, False) for item in stored(table(results, place))}

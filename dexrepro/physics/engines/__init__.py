@@ -1,0 +1,1 @@
+"""One module an engine, each with what :class:`dexrepro.physics.engine.Engine` asks for."""
