@@ -140,25 +140,32 @@ class _Report:
     # --------------------------------------------------------------------------------------------------- the equations
 
     def _equations(self, book: Book) -> list[dict[str, Any]]:
-        """For each equation its mentions: ``code``, ``parameter``, and ``named``, the errata and claims."""
+        """Each equation, typeset, with its mentions: ``code``, ``parameter``, and ``named``, the errata and claims."""
         shown = {
             item["id"]: f"chapter{chapter['number']}.html#{item['id']}"
             for chapter in book
             for item in [*chapter["claims"], *chapter["errata"]]
         }
-        rows: dict[str, dict[str, Any]] = {}
-        for mention in equations.index():
+        printed, rows = equations.printed(), dict[str, dict[str, Any]]()
+        mentions = equations.index()
+        for name in sorted({*printed, *(mention.equation for mention in mentions)}, key=equations.place):
+            section, latex = printed.get(name, ("", ""))
+            row = {"equation": name, "section": section, "typeset": equations.typeset(latex)}
+            rows[name] = {**row, "code": [], "parameter": [], "named": {}}
+        for mention in mentions:
             link = self.code.link(mention.path, mention.line)
             entry = {**mention._asdict(), **link, "to": shown.get(mention.name, link["to"])}
-            empty = {"equation": mention.equation, "code": [], "parameter": [], "named": {}}
-            row = rows.setdefault(mention.equation, empty)
+            row = rows[mention.equation]
             if mention.kind in ("erratum", "claim"):
                 row["named"].setdefault(mention.name, entry)
             else:
                 row[mention.kind].append(entry)
         for row in rows.values():
             row["named"] = list(row["named"].values())
-            names = ", ".join(dict.fromkeys(m["name"] for m in [*row["code"], *row["named"]])) or "parameters"
+            row["used"] = bool(row["code"] or row["named"] or row["parameter"])
+            names = ", ".join(dict.fromkeys(m["name"] for m in [*row["code"], *row["named"]])) or (
+                "parameters" if row["parameter"] else f"not used, Sect. {row['section']}"
+            )
             to = f"equations.html#eq-{row['equation']}"
             self._searchable("equation", f"Eq. ({row['equation']}): {names}", to, f"{row['equation']} equation")
         return list(rows.values())
