@@ -102,4 +102,4 @@ def test_every_equation_of_the_book_is_typeset_and_most_are_cited() -> None:
         typeset = equations.typeset(latex)
         assert section.startswith(name.split(".")[0])
         assert "\\" not in typeset, f"({name}) has a word that is not typeset"
-        assert "<mi>&" not in typeset, f"({name}) has a column that is not aligned"
+        assert "<mi>&</mi>" not in typeset, f"({name}) has a column that is not aligned"
