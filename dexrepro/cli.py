@@ -24,15 +24,28 @@ from dexrepro.errors import InputError
 if TYPE_CHECKING:
     from dexrepro.baselines import ChapterReport
 
-HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--help", "-h", "--info", "-i", "--hydra-help", "--resolve")
+HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--info", "-i", "--hydra-help", "--resolve")
 SHOWN = 6  # names in one line of the check
-CASES = ("case", "cases")
-TUNE = {
-    "tune_command": "case=EXPERIMENT.CASE minimise=METRIC (or maximise=) budget=N, and parameters: law.gain=0.01..0.1",
-    "compare_command": "laws=FOLDER case=EXPERIMENT.CASE,... minimise=METRIC (or maximise=) budget=N",
-}
-STUDY = ("claim", "samples", "hours")  # what only a study knows
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
+STATUSES = {
+    OK: "done; check: the same as stored",
+    FAILED: "a case failed or cannot be drawn; check: something differs; the output is no longer read",
+    WRONG: "the input cannot be used, or results are missing; one sentence says what",
+    INTERRUPTED: "interrupted; the same command completes what is missing",
+}
+RUN = """
+  EXPERIMENT.key=value    any parameter (dexrepro show EXPERIMENT names them); what deviates from the book goes to runs/
+  +scene=NAME             a scene, or another file, of the folder that --config-dir names
+
+examples:
+  dexrepro run chapter=2                       every experiment of a chapter
+  dexrepro run figure=2.7 seed=3               what one figure needs
+  dexrepro run -m figure=2.7 'seed=range(10)'  a sweep; hydra/launcher=joblib, ray, submitit_slurm
+  dexrepro run --config-dir FOLDER +scene=NAME
+  dexrepro run chapter=N --cfg job             every parameter with its value"""
+TUNE = "\n  law.KEY=LOW..HIGH       a parameter to search; else those of the law that declare a range\n"
+TUNE += "  EXPERIMENT.key=value    what shall be another value throughout, as for dexrepro run"
+SHOW = "\n\nexamples: dexrepro show C4.01 (or 2.7, 2.32, k_o, ImpedanceReference, movement_estimation.stiffness)"
 
 for name in ("stdout", "stderr"):  # closed, or of an alphabet that lacks a sign: no reason to fail
     stream: Any = getattr(sys, name) or open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  as long as we run
@@ -66,7 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _dispatch(arguments: list[str]) -> int:
-    if arguments[:1] == ["run"]:
+    if arguments[:1] == ["run"] and not {"-h", "--help"} & {*arguments}:
         return run_command(arguments[1:])
     parser = _parser()
     if "_ARGCOMPLETE" in os.environ:
@@ -101,65 +114,69 @@ def _experiments_option(arguments: list[str]) -> list[str]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="dexrepro", description="Reproduce the book's figures and check its claims.")
+    from dexrepro.keys import described
+
+    told = "exit status:\n" + "\n".join(f"  {status:<5}{meaning}" for status, meaning in STATUSES.items())
+    parser = argparse.ArgumentParser(
+        prog="dexrepro", description="Reproduce the book's figures and check its claims.", epilog=told,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )  # fmt: skip
     parser.add_argument("--version", action="version", version=f"dexrepro {__version__}")
     parser.add_argument("--experiments", metavar="DIR", help="experiments of your own, beside the book's")
     commands = parser.add_subparsers(required=True, metavar="command", dest="command")
-    selection = argparse.ArgumentParser(add_help=False)
-    words = selection.add_argument(
-        "selection", nargs="*", metavar="key=value", help="chapter=N, only=EXPERIMENT, results=DIR"
-    )
-    words.completer = _completions  # type: ignore[attr-defined]
-    commands.add_parser("run", parents=[selection], help="simulate, measure and draw (see: dexrepro run --help)")
+
+    def add(name: str, help: str, more: str = "", metavar: str = "key=value") -> argparse.ArgumentParser:
+        command: argparse.ArgumentParser = commands.add_parser(
+            name, help=help, description=help[0].upper() + help[1:] + ".", epilog=described(name) + more,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )  # fmt: skip
+        words = command.add_argument("selection", nargs="*", metavar=metavar, help="as listed below")
+        words.completer = _completions  # type: ignore[attr-defined]
+        command.set_defaults(function=globals()[f"{name}_command"])
+        return command
+
+    run = add("run", "simulate, measure and draw what is not there yet", RUN)
+    run.add_argument("-m", "--multirun", action="store_true", help="a sweep: each combination of values is a job")
+    run.add_argument("-cd", "--config-dir", metavar="DIR", help="a folder of your own with configurations and laws")
+    run.add_argument("-c", "--cfg", choices=["job", "hydra", "all"], help="print the configuration, run nothing")
+    run.add_argument("-i", "--info", help="what Hydra knows: all, defaults, plugins (see also --hydra-help)")
+    run.add_argument("--resolve", action="store_true", help="with --cfg: references replaced by their values")
 
     listing = commands.add_parser("list", help="chapters, experiments, cases, figures, claims, errata")
-    listing.add_argument("--json", action="store_true")
+    listing.add_argument("--json", action="store_true", help="for programs, see docs/schemas")
     listing.add_argument("--markdown", action="store_true", help="the claims of the book counted by verdict")
     listing.set_defaults(function=list_command)
 
-    check = commands.add_parser("check", parents=[selection], help="compare results with the stored baselines")
-    check.add_argument("--json", action="store_true")
+    add("show", "all there is about a claim, figure, equation, symbol, law, parameter or experiment", SHOW, "NAME")
+    check = add("check", "compare results with the stored baselines, simulate nothing")
+    check.add_argument("--json", action="store_true", help="for programs, see docs/schemas")
     check.add_argument("--update", action="store_true", help="run, perturb, and store new baselines")
     check.add_argument("--accept", nargs="+", default=[], metavar="ID", help="claims whose verdict may change")
-    check.set_defaults(function=check_command)
 
-    cross = commands.add_parser("crosscheck", parents=[selection], help="run the book under MuJoCo, too, and compare")
+    add("draw", "draw again from files, nothing simulated")
+    add("report", "build the HTML page from files")
+    cross = add("crosscheck", "run the book under MuJoCo, too, and compare")
     cross.add_argument("--update", action="store_true", help="renew the table that is shipped")
-    cross.set_defaults(function=crosscheck_command)
-
-    draw = commands.add_parser("draw", parents=[selection], help="draw again from files, nothing simulated")
-    draw.set_defaults(function=draw_command)
-
-    report = commands.add_parser("report", parents=[selection], help="build the HTML page from files")
-    report.set_defaults(function=report_command)
-
-    study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
+    study = add("study", "how often claims hold when the unprinted varies")
     study.add_argument("--update", action="store_true", help="renew the study that is shipped")
     study.add_argument("--confirm", action="store_true", help="carry samples over a change of code: two run again")
-    study.set_defaults(function=study_command)
-
-    tune = commands.add_parser("tune", help="search a case's parameters for the best value of a metric")
-    compare = commands.add_parser("compare", help="the laws of a folder beside the book's, tuned alike")
-    for command, function in ((tune, tune_command), (compare, compare_command)):
-        command.add_argument("selection", nargs="*", metavar="key=value", help=TUNE[function.__name__])
-        command.set_defaults(function=function)
-
-    render = commands.add_parser("render", parents=[selection], help="animate recorded runs (case=NAME format=gif|mp4)")
-    render.set_defaults(function=render_command)
+    add("tune", "search a case's parameters for the best value of a metric", TUNE)
+    add("compare", "the laws of a folder beside the book's, tuned alike")
+    add("render", "animate recorded runs: of a FOLDER, or films that are missing or outdated", "", "FOLDER|key=value")
 
     new = commands.add_parser("new", help="write a working control law of your own, with its test")
-    new.add_argument("what", choices=["controller"])
-    new.add_argument("--kind", choices=["joint", "end_point", "holding"], default="holding")
+    new.add_argument("what", choices=["controller"], help="what to write")
+    new.add_argument("--kind", choices=["joint", "end_point", "holding"], default="holding", help="where it thinks")
     new.add_argument("name", help="class name, for example MyLaw")
     new.set_defaults(function=new_command)
 
     diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
-    diff.add_argument("a", type=Path)
-    diff.add_argument("b", type=Path)
+    diff.add_argument("a", type=Path, help="folder of a result")
+    diff.add_argument("b", type=Path, help="folder of another")
     diff.set_defaults(function=diff_command)
 
     completion = commands.add_parser("completion", help='for Tab: eval "$(dexrepro completion bash)"')
-    completion.add_argument("shell", choices=("bash", "zsh", "fish"))
+    completion.add_argument("shell", choices=("bash", "zsh", "fish"), help="whose script to print")
     completion.set_defaults(function=completion_command)
     return parser
 
@@ -355,7 +372,7 @@ def check_command(options: argparse.Namespace) -> int:
     from dexrepro import baselines
     from dexrepro.selection import existing, quoted, selected
 
-    numbers, only, results, workers, extra = selected(options.selection, CASES)
+    numbers, only, results, workers, extra = selected(options.selection, "check")
     case = next((quoted(f"case={value}") for value in extra.values()), None)
     if options.update:
         for number in numbers:
@@ -407,7 +424,7 @@ def crosscheck_command(options: argparse.Namespace) -> int:
     from dexrepro import crosscheck
     from dexrepro.selection import selected
 
-    numbers, only, results, workers, _ = selected(options.selection)
+    numbers, only, results, workers, _ = selected(options.selection, "crosscheck")
     target = crosscheck.table(results, options.update)
     for number in numbers:
         for item in crosscheck.run(number, only, results, workers):
@@ -432,7 +449,7 @@ def draw_command(options: argparse.Namespace) -> int:
     from dexrepro.runner import redraw
     from dexrepro.selection import existing, quoted, selected
 
-    numbers, only, results, _, extra = selected(options.selection, CASES)
+    numbers, only, results, _, extra = selected(options.selection, "draw")
     found = [(n, e, existing(results) / f"chapter{n}" / e.name) for n in numbers for e in select(n, only or None, None)]
     if extra:
         words = [quoted(f"results={results}"), *(quoted(f"case={value}") for value in extra.values())]
@@ -457,12 +474,27 @@ def draw_command(options: argparse.Namespace) -> int:
     return status
 
 
+def show_command(options: argparse.Namespace) -> int:
+    """``dexrepro show NAME ...``: all there is about a claim, figure, equation, symbol, law, parameter, experiment."""
+    from dexrepro.report.show import show
+    from dexrepro.selection import selected
+
+    keyed = [word for word in options.selection if word.startswith("results=")]
+    results = selected(keyed, "show").results
+    if not (names := [word for word in options.selection if word not in keyed]):
+        raise InputError("show needs a name, such as C4.01, 2.7, 2.32, k_o or movement_estimation")
+    for name in names:
+        for line in show(name, results):
+            out.print(line, markup=False)
+    return OK
+
+
 def report_command(options: argparse.Namespace) -> int:
     """Build results/report/index.html."""
     from dexrepro.report import page
     from dexrepro.selection import existing, selected
 
-    out.print(str(page.build(existing(selected(options.selection).results))), markup=False)
+    out.print(str(page.build(existing(selected(options.selection, "report").results))), markup=False)
     return OK
 
 
@@ -487,7 +519,7 @@ def render_command(options: argparse.Namespace) -> int:
 
     folders = [Path(text) for text in options.selection if "=" not in text]
     words = [text for text in options.selection if "=" in text]
-    numbers, only, results, _, values = selected(words, ("case", "format", "allow"))
+    numbers, only, results, _, values = selected(words, "render")
     allow = [name for name in values.get("allow", "").strip("[]").split(",") if name]
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
@@ -519,7 +551,7 @@ def study_command(options: argparse.Namespace) -> int:
 
     if any(text.startswith(("jobs=", "hydra")) for text in options.selection):
         return _study_jobs(options)
-    numbers, only, results, workers, values = selected(options.selection, STUDY)
+    numbers, only, results, workers, values = selected(options.selection, "study")
     samples, hours = _samples(values.get("samples")), _hours(values.get("hours"))
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
@@ -562,7 +594,7 @@ def _study_jobs(options: argparse.Namespace) -> int:
         raise InputError(f"jobs = {jobs or 'null'} is not allowed: it must be a whole number of 1 or greater")
     launcher = [f"{key}={value}" for key, value in values.items() if key.startswith("hydra")]
     words = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
-    numbers, only, folder, _, _ = selected(words, STUDY)
+    numbers, only, folder, _, _ = selected(words, "study")
     _samples(values.get("samples")), _hours(values.get("hours"))
     names = [name for number in numbers for name in study.experiments_of(number, only, values.get("claim"))]
     selection = ",".join(json.dumps(text) for text in words)
@@ -604,7 +636,7 @@ def tune_command(options: argparse.Namespace) -> int:
     from dexrepro import tune
     from dexrepro.selection import quoted
 
-    known, rest = _search_words(options.selection)
+    known, rest = _search_words(options.selection, "tune")
     experiment = known["case"].partition(".")[0]
     overrides = [quoted(word) for word in rest if re.match(rf"[+~]|seed=|shared\.|{re.escape(experiment)}\.", word)]
     parameters = [word for word in rest if quoted(word) not in overrides]
@@ -633,9 +665,9 @@ def compare_command(options: argparse.Namespace) -> int:
 
     from dexrepro import tune
 
-    known, rest = _search_words(options.selection, "laws")
+    known, rest = _search_words(options.selection, "compare", "laws")
     if rest:
-        raise InputError(f"'{rest[0]}' has no meaning here; there are: {TUNE['compare_command']}")
+        raise InputError(f"'{rest[0]}' has no meaning here; see: dexrepro compare --help")
     laws = tune.laws_in(Path(known["laws"]).expanduser())
     results, names = known["results"], known["case"].split(",")
     rows = tune.leaderboard(
@@ -656,11 +688,12 @@ def _say(text: str) -> None:
     out.print(text, markup=False)
 
 
-def _search_words(words: Sequence[str], *needed: str) -> tuple[dict[str, Any], list[str]]:
+def _search_words(words: Sequence[str], command: str, *needed: str) -> tuple[dict[str, Any], list[str]]:
     """What the words of ``tune`` and ``compare`` ask for, and the other words."""
+    from dexrepro.keys import TAKEN
     from dexrepro.selection import positive_workers
 
-    own = ("case", "budget", "minimise", "maximise", "results", "workers", *needed)
+    own = TAKEN[command]
     known: dict[str, Any] = dict(text.partition("=")[::2] for text in words if text.partition("=")[0] in own)
     for key in ("case", *needed):
         if not known.get(key):

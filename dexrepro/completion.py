@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from dexrepro import chapters
+from dexrepro.keys import SELECTION, TAKEN
 
 
 def script(shell: str) -> str:
@@ -33,11 +34,9 @@ def words(prefix: str, parsed_args: argparse.Namespace, **_: Any) -> Iterator[st
     elif "." in prefix:
         yield from (f"{name}=" for number in numbers for name in _parameters(number, prefix))
     else:
-        yield from ("chapter=", "only=", "figure=", "results=", "workers=")
-        yield from {"study": ("claim=", "samples=", "hours=", "jobs="), "render": ("case=", "format=")}.get(
-            str(getattr(parsed_args, "command", "")), ()
-        )
-        if getattr(parsed_args, "command", "") == "run":
+        command = str(getattr(parsed_args, "command", ""))
+        yield from (f"{key}=" for key in TAKEN.get(command, SELECTION))
+        if command == "run":
             yield from (f"{name}." for number in numbers for name in chapters.names(number))
 
 

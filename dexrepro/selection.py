@@ -21,9 +21,18 @@ from dexrepro.config import (
     parsed,
 )
 from dexrepro.errors import InputError, nearest
+from dexrepro.keys import KEYS, SELECTION, TAKEN
 from dexrepro.plan import select
 
-FILES = ("demonstrations", "csv", "file", "path")  # keys whose values are names of files
+FILES = (
+    "demonstrations",
+    "csv",
+    "file",
+    "path",
+    "files",
+    "obstacle_files",
+    "block_file",
+)  # keys whose values are names of files
 
 
 class Selection(NamedTuple):
@@ -37,15 +46,14 @@ class Selection(NamedTuple):
     extra: dict[str, str]
 
 
-def selected(words: Iterable[str], extra: Sequence[str] = ()) -> Selection:
-    """What the words ``key=value`` of a command select; ``extra``: keys that it knows beside the common ones."""
-    overrides = list(words)
+def selected(words: Iterable[str], command: str) -> Selection:
+    """What the words ``key=value`` of a command select."""
+    overrides = [re.sub("^cases=", "case=", text) for text in words]
     for text in overrides:
-        if text.partition("=")[0] not in ("chapter", "results", "only", "figure", "workers", *extra):
-            more = "".join(f", {key}=" for key in extra)
-            raise InputError(
-                f"'{text}' has no meaning here; there are: chapter=N, only=EXPERIMENT, figure=ID, results=DIR{more}"
-            )
+        if text.partition("=")[0] not in TAKEN[command]:
+            known = ", ".join(f"{key}={KEYS[key][0]}" for key in TAKEN[command])
+            raise InputError(f"'{text}' has no meaning here; there are: {known}")
+    extra = [key for key in TAKEN[command] if key not in (*SELECTION, "workers")]
     values = dict(text.partition("=")[::2] for text in overrides)
     numbers, _ = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
     only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dexrepro.arrays import Array
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config
-from dexrepro.primitives.recorded import Format, demonstrations
+from dexrepro.primitives.recorded import Format, demonstrations, matching, read_corners
 
 
 def recorded(files: str | Sequence[str], count: int, samples: int, config: Config, axes: int) -> list[Array]:
@@ -21,3 +21,14 @@ def recorded(files: str | Sequence[str], count: int, samples: int, config: Confi
         return [100 * path for path in demonstrations(files, count, samples, style, axes, "cm")]
     except ValueError as error:
         raise InputError(f"demonstrations: {error}") from error
+
+
+def corners(files: str | Sequence[str], config: Config, key: str) -> list[Array]:
+    """Corners (n, 2) [cm] of polygons, one a file. Raises InputError, which names the key, where one cannot be used."""
+    patterns = [files] if isinstance(files, str) else list(files)
+    names = [name for pattern in patterns for name in matching(pattern) or [pattern]]
+    try:
+        style = Format(unit=config.unit, encoding=config.encoding)
+        return [100 * read_corners(name, style, "cm") for name in names]
+    except ValueError as error:
+        raise InputError(f"{key}: {error}") from error

@@ -80,6 +80,24 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
     return time, position
 
 
+def read_corners(path: str, style: Format = Format(), otherwise: str = "m") -> Array:
+    """Corners (n, 2) [m] of a polygon, in order, from a file with the columns x, y; see :func:`read_path`."""
+    try:
+        table = _Table(decoded(Path(path).expanduser().read_bytes(), style.encoding).splitlines(), ("x", "y"))
+        corners = LENGTHS[table.unit(style, "unit", LENGTHS, 1) or otherwise] * table._row_by_row()[0]
+    except OSError as error:
+        raise ValueError(f"cannot read '{path}': {error.strerror}") from None
+    except ValueError as error:
+        raise ValueError(f"'{path}': {error}") from None
+    corners = corners[:-1] if len(corners) > 1 and (corners[0] == corners[-1]).all() else corners
+    (x, y), (later_x, later_y) = corners.T, np.roll(corners, -1, axis=0).T
+    if len(corners) < 3 or abs((x * later_y - y * later_x).sum()) < 1e-12:
+        raise ValueError(
+            f"'{path}': it has no area; it must hold the corners x, y of a polygon, three or more, in order"
+        )
+    return corners
+
+
 class _Table:
     """Rows of numbers in lines of text, from the columns ``wanted``; what stands before them names columns and units.
 

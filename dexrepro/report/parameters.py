@@ -21,7 +21,7 @@ def table(
     used = {key: value for key, value in run.items() if key != "cases"}
     for key, value in _flat(used or resolved_block(composed, experiment), experiment):
         origin, home = origin_of(key, composed, origins)
-        rows.append({"key": key, "value": value, "home": home, **_shown(origin)})
+        rows.append({"key": key, "value": value, "home": home, **shown(origin)})
     return rows
 
 
@@ -34,14 +34,15 @@ def index(
         if row["home"]:
             used.setdefault(row["home"], {}).setdefault(row["key"].partition(".")[0], row["key"])
     found = [
-        {"key": key, "value": _get(composed, key), "used": used.get(key, {}), **_shown(origin)}
+        {"key": key, "value": value_of(composed, key), "used": used.get(key, {}), **shown(origin)}
         for key, origin in origins.items()
         if origin.symbol
     ]
     return sorted(found, key=lambda entry: (entry["plain"].lower(), entry["plain"], not entry["used"]))
 
 
-def _shown(origin: Provenance | None) -> dict[str, Any]:
+def shown(origin: Provenance | None) -> dict[str, Any]:
+    """Symbol, unit, origin and range as texts, empty where there is none."""
     if origin is None:
         return {"symbol": "", "plain": "", "unit": "", "kind": "", "text": "", "range": ""}
     bounds = f"{origin.low:g} to {origin.high:g}" if origin.low is not None else ""
@@ -50,9 +51,11 @@ def _shown(origin: Provenance | None) -> dict[str, Any]:
             "text": origin.text, "range": bounds}  # fmt: skip
 
 
-def _get(node: Any, dotted: str) -> Any:
+def value_of(node: Any, dotted: str) -> Any:
+    """The value of a key in a composed configuration, a block in one line."""
     for part in dotted.split("."):
-        node = node.get(part) if isinstance(node, Mapping) else None
+        element = isinstance(node, list) and part.isdigit() and int(part) < len(node)
+        node = node[int(part)] if element else node.get(part) if isinstance(node, Mapping) else None
     if isinstance(node, Mapping):
         return ", ".join(f"{key}: {value}" for key, value in node.items() if key != "_target_")
     return node

@@ -11,7 +11,9 @@ import pytest
 from dexrepro.case import generator, live
 from dexrepro.chapters.chapter5 import crossing, letters
 from dexrepro.chapters.chapter5.obstacle_crossing import experiment as obstacle_crossing
+from dexrepro.chapters.chapter6.planar_skill import experiment as planar_skill
 from dexrepro.chapters.chapter7 import skills
+from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.errors import InputError
 
@@ -112,3 +114,84 @@ def test_reaches_that_do_not_begin_and_end_together_get_one_sentence(change: str
     config = configured("7", "reaching_demonstrations", "corrected", "demonstrations=reach*.csv")
     with pytest.raises(InputError, match=sentence):
         skills.demonstrate(config)
+
+
+def write_reach(name: str, aside: float, goal: tuple[float, float] = (20.0, 9.0)) -> None:
+    share = np.linspace(0, 1, 80)
+    progress = (share**3 * (10 - 15 * share + 6 * share**2))[:, None]
+    path = (2.3, 0, 0) + progress * (goal[0] - 2.3, goal[1], 0) + np.sin(np.pi * share)[:, None] ** 3 * (0, aside, 2)
+    np.savetxt(name, np.column_stack([share, path]), delimiter=",")
+
+
+def test_recorded_reactions_are_learned_in_the_place_of_the_synthetic_ones() -> None:
+    write_reach("left.csv", 6.0)
+    config = configured("7", "reactive_learning", "frozen", "reactions={close_low_left: left.csv}", "draws=1")
+    recording = reactive_learning.simulate(config, lambda purpose: generator(0, "reactive_learning", purpose))
+    demonstrated = recording["demonstrations"].reshape(len(recording.time), 3, -1, 3)
+    assert np.ptp(demonstrated[:, 0], axis=1).max() == pytest.approx(0, abs=1e-9)  # one file takes every turn
+    assert np.ptp(demonstrated[:, 1], axis=1).max() > 0.01
+    share = np.linspace(0, 1, len(recording.time))
+    assert demonstrated[len(share) // 2, 0, 0, 1] == pytest.approx(4.5 + 6.0, abs=0.1)
+    assert reactive_learning.measure(recording, config)["rmse5"] < 0.5
+
+
+@pytest.mark.parametrize(
+    ("name", "goal", "sentence"),
+    [
+        ("close_low_lift", (20.0, 9.0), "reactions: unknown condition 'close_low_lift': did you mean 'close_low_left'"),
+        ("close_low_left", (30.0, 9.0), r"reactions.close_low_left: they go from \(2.3, 0\) to \(30, 9\) cm instead"),
+    ],
+)
+def test_a_reaction_that_cannot_be_used_gets_one_sentence(name: str, goal: tuple[float, float], sentence: str) -> None:
+    write_reach("left.csv", 6.0, goal)
+    config = configured("7", "reactive_learning", "frozen", f"reactions={{{name}: left.csv}}")
+    with pytest.raises(InputError, match=sentence):
+        reactive_learning.taught(config)
+
+
+def write_drawing(turn: float = 0.0) -> None:
+    """A drawing down, a pause, and across a block, and that block; about the origin, turned by an angle [rad]."""
+    share = np.linspace(0, 1, 80)
+    progress = (share**3 * (10 - 15 * share + 6 * share**2))[:, None]
+    down, across = (30, 20) + progress * (0, -12), (30, 8) + progress * (-24, 0)
+    path = np.concatenate([down, np.repeat(down[-1:], 8, axis=0), across + np.sin(np.pi * share)[:, None] * (0, 0.5)])
+    about = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    np.savetxt("drawing.csv", np.column_stack([np.arange(len(path)) / 20, path @ about.T]), delimiter=",")
+    block = np.array([(16, 6.5), (19, 6.5), (19, 9), (16, 9)]) @ about.T
+    np.savetxt("block.csv", block, delimiter=",", header="x [cm], y [cm]")
+    np.savetxt("wall.csv", np.array([(0, 2), (34, 2), (34, 3), (0, 3)]) @ about.T, delimiter=",")
+
+
+def planar(*overrides: str) -> tuple[Any, Any]:
+    own = ["demonstrations.files=drawing.csv", "map.block_file=block.csv", "map.obstacle_files=wall.csv", *overrides]
+    config = configured("6", "planar_skill", "book", *own)
+    return config, planar_skill.simulate(config, lambda purpose: generator(0, "planar_skill", purpose))
+
+
+@pytest.mark.parametrize("turn", [0.0, 1.2, 3.0])
+def test_a_drawing_of_ones_own_is_led_round_ones_own_block_after_following_the_refusal(turn: float) -> None:
+    write_drawing(turn)
+    with pytest.raises(InputError, match=r"does not lead round the new block; set (planar_skill\.ref.*)") as refused:
+        planar()
+    words = str(refused.value).partition("; set ")[2].replace("planar_skill.", "").split()
+    config, recording = planar(*words)
+    metrics = planar_skill.measure(recording, config)
+    assert metrics["clearance_new_max"] < 0 < metrics["clearance_reference_min"]
+    assert "segmentation_error_max" not in metrics  # nobody says where the person paused
+    assert metrics["pauses_fewest_min"] == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "sentence"),
+    [
+        ("block.csv", "1,2\n3,4\n", "map.block_file: 'block.csv': it has no area; it must hold the corners"),
+        ("block.csv", "1,2\n3,x\n4,5\n", "map.block_file: 'block.csv': line 2 holds '3,x'"),
+        ("block.csv", "60,60\n62,60\n62,62\n", "must lie across the second of the two sub-skills"),
+        ("drawing.csv", "1,2\n3,4\n", "demonstrations: 'drawing.csv': it has 2 samples"),
+    ],
+)
+def test_a_map_that_cannot_be_used_gets_one_sentence(name: str, text: str, sentence: str) -> None:
+    write_drawing()
+    Path(name).write_text(text)
+    with pytest.raises(InputError, match=sentence):
+        planar()

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from dexrepro.case import generator, live
+from dexrepro.chapters.own.paths import leader_path
 from dexrepro.chapters.own.scene import experiment as scene
 from dexrepro.cli import main, run_overrides
 from dexrepro.config import compose_chapter, experiment_cases
@@ -107,6 +108,49 @@ def test_a_force_law_holds_the_elastic_object(law: str) -> None:
     assert recording["force_along"][-500:] == pytest.approx(2.0, abs=0.5)
     assert np.abs(recording["arm.force"][:, 1]).max() < 0.2
     assert metrics["force_peak"] < 2.5
+
+
+LEADER = "{_target_: dexrepro.robots.urdf.from_urdf, path: tiny.urdf, end: tip, base: [1.25, 0, 0]}"
+
+
+def test_the_leader_may_be_an_arm_that_yields_to_what_it_holds() -> None:
+    squeeze = ("scene.offset=[-0.25,0,0]", "scene.elastic={stiffness: 100, rest_length: 0.27}", "scene.duration=1",
+               "scene.leader={line: {start: [0.75, 0.1, 0], end: [0.8, 0.1, 0], period: 4}}")  # fmt: skip
+    force = "force_control.IntegralForceControl, rate: 0.1, desired_force: 2, dt: 0.001"
+    gaps = {}
+    for stiffness in (100, 3000):
+        law = f"{{_target_: {CONTROL}.joint_pd.JointPD, stiffness: {stiffness}, damping: 20}}"
+        recording, _ = run(force, *squeeze, f"scene.leader_arm={LEADER}", f"scene.leader_law={law}")
+        assert recording["force_along"][-200:] == pytest.approx(2.0, abs=0.5)
+        plan = leader_path(configured(*squeeze))(1.0).position
+        gaps[stiffness] = np.linalg.norm(recording["leader.pose"][-1] - plan)
+    assert 5 * gaps[3000] < gaps[100]
+    assert gaps[100] > 1e-4
+
+
+def test_the_leaders_law_may_need_its_own_model() -> None:
+    law = f"{{_target_: {CONTROL}.computed_torque.ComputedTorque, _partial_: true, frequency: 30}}"
+    follow = 'computed_torque.ComputedTorque, model: "${scene.model}", frequency: 30'
+    pair = ("scene.leader_arm=" + LEADER.replace("1.25", "1.0"), f"scene.leader_law={law}")
+    recording, metrics = run(follow, *pair, "scene.offset=[-0.1,0,0]")
+    assert metrics["rmse"] < 1e-3
+    assert np.ptp(recording["leader.torque"]) > 0
+
+
+@pytest.mark.parametrize(
+    ("arm", "law", "sentence"),
+    [
+        (LEADER, "null", "scene.leader_law must name a law of kind joint or end_point"),
+        (LEADER.replace("1.25", "9"), "joint_pd.JointPD, stiffness: 9, damping: 1", "comes no closer"),
+        ("{path: tiny.urdf}", "joint_pd.JointPD, stiffness: 9, damping: 1", "scene.leader_arm is no arm"),
+    ],
+)
+def test_a_leader_that_cannot_be_used_gets_one_sentence(arm: str, law: str, sentence: str) -> None:
+    law = law if law == "null" else f"{{_target_: {CONTROL}.{law}}}"
+    config = configured("scene.law={_target_: test_own_scene.Spring}", f"scene.leader_arm={arm}",
+                        f"scene.leader_law={law}")  # fmt: skip
+    with pytest.raises(InputError, match=sentence):
+        scene.simulate(config, None)
 
 
 def test_a_redundant_arm_of_the_library_goes_round_a_circle_without_falling() -> None:

@@ -9,12 +9,14 @@ import numpy as np
 
 from dexrepro.arrays import Array
 from dexrepro.chapters.chapter6 import learning
+from dexrepro.chapters.demonstrations import corners, recorded
+from dexrepro.errors import InputError
 from dexrepro.experiment import Config
 from dexrepro.humans.segmentation import change_point, slowest_point
 from dexrepro.humans.waypoints import Drawing, average, draw
 from dexrepro.primitives.constrained import Reference
 from dexrepro.primitives.dmp import DMP, Trajectory
-from dexrepro.primitives.obstacles import Polygon
+from dexrepro.primitives.obstacles import Polygon, clearance
 from dexrepro.primitives.reference_path import arc, detour, differentiable
 
 CUTS = {"ruptures": change_point, "slowest": slowest_point}
@@ -32,30 +34,43 @@ class Lesson:
 
     @property
     def segmentation_errors(self) -> Array:
-        """Estimated minus true cut [s] of each demonstration."""
-        return np.array([cut - drawing.pauses[0] for cut, drawing in zip(self.cuts, self.drawings)])
+        """Estimated minus true cut [s] of each demonstration whose pause is known."""
+        return np.array([cut - one.pauses[0] for cut, one in zip(self.cuts, self.drawings) if len(one.pauses)])
 
 
 def obstacles(config: Config) -> tuple[list[Polygon], Polygon]:
-    """The old obstacles and the additional block."""
-    old = [Polygon.rectangle(*box) for box in config.map.boxes]
-    return old, Polygon(np.array(config.map.block, float))
+    """The old obstacles and the additional block: of the map, or the user's own."""
+    old, block = [Polygon.rectangle(*box) for box in config.map.boxes], Polygon(np.array(config.map.block, float))
+    if config.map.get("obstacle_files"):
+        old = [Polygon(found) for found in corners(config.map.obstacle_files, config, "map.obstacle_files")]
+    if config.map.get("block_file"):
+        block = Polygon(corners(config.map.block_file, config, "map.block_file")[0])
+    return old, block
 
 
 def teach(config: Config, rng: np.random.Generator) -> list[Lesson]:
-    """``demonstrations.groups`` independent groups of demonstrations, each learned."""
-    return [_lesson(config, rng) for _ in range(config.demonstrations.groups)]
+    """``demonstrations.groups`` independent groups of demonstrations, each learned; the user's own are one group."""
+    groups = 1 if config.demonstrations.get("files") else config.demonstrations.groups
+    return [_lesson(config, rng) for _ in range(groups)]
 
 
-def _lesson(config: Config, rng: np.random.Generator) -> Lesson:
+def _drawings(config: Config, rng: np.random.Generator) -> list[Drawing]:
+    """The user's drawings, of which nobody says where they pause, or else those of a synthetic person."""
     d = config.demonstrations
+    if d.get("files"):
+        time = np.arange(round(200 * d.duration) + 1) / 100
+        return [Drawing(time, path, np.empty(0)) for path in recorded(d.files, d.count, len(time), config, axes=2)]
     strokes = [np.array(points, float) for points in d.strokes]
     strokes[1] += np.outer([0.0, *np.ones(len(strokes[1]) - 2), 0.0], [0.0, d.lift])
     drawings = []
     for _ in range(d.count):
         paces = d.duration * (1 + 0.08 * rng.normal(size=2))
         drawings.append(draw(strokes, paces, rng, d.spread, d.tremor))
-    drawings = [replace(w, position=w.position * (1 + config.perturbation)) for w in drawings]
+    return drawings
+
+
+def _lesson(config: Config, rng: np.random.Generator) -> Lesson:
+    drawings = [replace(w, position=w.position * (1 + config.perturbation)) for w in _drawings(config, rng)]
     cut = CUTS[config.segmentation]
     cuts = [cut(drawing.time, drawing.position) for drawing in drawings]
     halves = []
@@ -67,7 +82,7 @@ def _lesson(config: Config, rng: np.random.Generator) -> Lesson:
 
 
 def preferred_arc(config: Config) -> Array:
-    """The operator's points round the new block, in the direction of travel (towards smaller x)."""
+    """The operator's points round the new block, in the direction of travel."""
     a = config.reference.arc
     return arc(a.centre, a.radius, np.radians(a.angles[0]), np.radians(a.angles[1]))
 
@@ -78,10 +93,41 @@ def spline_reference(config: Config, movement: Trajectory) -> tuple[Reference, A
     Also its 100 samples and the indices where the movement is left and resumed.
     """
     around, path = preferred_arc(config), movement.position
-    leave = int(np.argmax(path[:, 0] < around[0, 0] + config.reference.gap_in)) - 1
-    resume = int(np.argmax(path[:, 0] < around[-1, 0] - config.reference.gap_out))
+    leave, resume = _passage(config, around, path)
     at, points = detour(movement.time, path, around, leave, resume)
     return differentiable(at, points, movement.time), points, (leave, resume)
+
+
+def _passage(config: Config, around: Array, path: Array) -> tuple[int, int]:
+    """Where a path (n, 2) is left for the arc and resumed after it, along the way from the arc's start to its end."""
+    along = (around[-1] - around[0]) / np.linalg.norm(around[-1] - around[0])
+    progress, (enter, end) = path @ along, around[[0, -1]] @ along
+    leave = int(np.argmax(progress > enter - config.reference.gap_in)) - 1
+    return leave, int(np.argmax(progress > end + config.reference.gap_out))
+
+
+def check_arc(config: Config, path: Array) -> None:
+    """Raises InputError, with an arc that would do, where the operator's does not lead a path round the new block."""
+    (old, block), given = obstacles(config), config.reference.arc
+    leave, resume = _passage(config, preferred_arc(config), path)
+    if np.linalg.norm(block.vertices - given.centre, axis=1).max() <= given.radius and 0 <= leave < resume:
+        return
+    centre = block.centroid.round(2)
+    radius = round(float(np.linalg.norm(block.vertices - centre, axis=1).max()) + 1.0, 2)
+    inside = np.flatnonzero(np.linalg.norm(path - centre, axis=1) < radius)
+    if not len(inside) or inside[0] == 0 or inside[-1] == len(path) - 1:
+        raise InputError(
+            f"map: the new block about ({centre[0]:g}, {centre[1]:g}) cm must lie across the second of the two "
+            "sub-skills into which the demonstrations are cut, away from its ends"
+        )
+    first, last = (np.degrees(np.arctan2(*(path[k] - centre)[::-1])) for k in inside[[0, -1]])
+    turns = [[first, first + (last - first) % 360], [first, first - (first - last) % 360]]
+    angles = max(turns, key=lambda turn: clearance(arc(centre, radius, *np.radians(turn)), old))
+    words = {"centre": centre.tolist(), "radius": radius, "angles": [round(float(angle), 1) for angle in angles]}
+    raise InputError(
+        "reference.arc: it does not lead round the new block; set "
+        + " ".join(f"planar_skill.reference.arc.{key}={value}".replace(", ", ",") for key, value in words.items())
+    )
 
 
 def extended_paths(config: Config, lesson: Lesson, steps: int) -> list[Trajectory]:
@@ -115,4 +161,6 @@ def draw_map(axes: Any, config: Config, reference: bool = True) -> None:
     axes.fill(*block.vertices.T, color="#A8DCF0", linewidth=0)
     if reference:
         axes.plot(*preferred_arc(config).T, "o", color="#0072B2", markersize=1.2)
-    axes.set(aspect="equal", xlim=(0, 20), ylim=(0, 16.3), xlabel="x [cm]")
+    axes.set(aspect="equal", xlabel="x [cm]")
+    if not config.demonstrations.get("files"):
+        axes.set(xlim=(0, 20), ylim=(0, 16.3))

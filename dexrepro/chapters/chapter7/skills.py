@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from dexrepro.arrays import Array
 from dexrepro.chapters.demonstrations import recorded
 from dexrepro.control.contract import printed_forms
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config
 from dexrepro.humans.muscle import Muscle, low_pass
 from dexrepro.humans.reaching import Obstacle, Reach, Reacher
@@ -117,6 +117,20 @@ def recorded_reaches(config: Config, shape: tuple[int, ...]) -> Array:
             f"{_point(wanted[1])} cm; set {moved_scene(start, goal)}"
         )
     return paths
+
+
+def with_recorded_reactions(config: Config, reactions: Array) -> Array:
+    """The same (conditions, repetitions, N, 3) [cm] with the user's own in the place of some, by condition."""
+    known = {"_".join(c.labels): index for index, c in enumerate(conditions(config))}
+    for name, files in (config.reactions or {}).items():
+        if name not in known:
+            raise InputError(f"reactions: unknown condition '{name}': {nearest(name, known)}")
+        try:
+            own = recorded_reaches(Config({**config, "demonstrations": files}), reactions.shape[1:])
+        except InputError as error:
+            raise InputError(str(error).replace("demonstrations", f"reactions.{name}", 1)) from error
+        reactions[known[name]] = moved(config, own)
+    return reactions
 
 
 def moved_scene(start: ArrayLike, goal: ArrayLike) -> str:

@@ -37,6 +37,7 @@ def _study(config: Config, lesson: plane.Lesson) -> tuple[dict[str, float], dict
         skill.rollout(duration / steps, horizon=duration)
         for skill, duration in zip((lesson.first, lesson.second), lesson.durations)
     )
+    plane.check_arc(config, second.position)
     reference, samples, (leave, resume) = plane.spline_reference(config, second)
     movements = plane.extended_paths(config, lesson, steps)
     extended = [movement.position for movement in movements]
@@ -45,13 +46,15 @@ def _study(config: Config, lesson: plane.Lesson) -> tuple[dict[str, float], dict
     inside = np.concatenate([lies_inside(path, [*old, block]) for path in extended])
     inside_old = np.concatenate([lies_inside(path, old) for path in extended])
     found = [pauses(drawing.time, drawing.position) for drawing in lesson.drawings]
-    alone = [_second_alone(drawing) for drawing in lesson.drawings]
-    row = {
+    known = {} if config.demonstrations.files else {
         "segmentation_error": np.abs(lesson.segmentation_errors).max(),
+        "pause_error": max(abs(t - w.pauses[0]) for times, w in zip(found, lesson.drawings) for t in times or [np.inf]),
+        "pauses_in_one": max(len(_second_alone(drawing)) for drawing in lesson.drawings),
+    }  # fmt: skip
+    row = {
+        **known,
         "pauses_fewest": min(map(len, found)),
         "pauses_most": max(map(len, found)),
-        "pause_error": max(abs(t - w.pauses[0]) for times, w in zip(found, lesson.drawings) for t in times or [np.inf]),
-        "pauses_in_one": max(map(len, alone)),
         "clearance_new": clearance(second.position, [block]),
         "clearance_old": min(clearance(first.position, old), clearance(second.position, old)),
         "clearance_first_new": clearance(first.position, [block]),

@@ -70,8 +70,9 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 def _demonstrations(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any) -> str:
     for i in range(settings.demonstrations.count):
         axes.plot(*lines[f"demonstration_{i}"].T, color=style.PLAIN, linewidth=0.6)
-    axes.annotate("start", (3, 16), xytext=(0.3, 15.2), fontsize=7)
-    axes.annotate("goal", (5, 14), xytext=(4.6, 14.5), fontsize=7)
+    if not settings.demonstrations.files:
+        axes.annotate("start", (3, 16), xytext=(0.3, 15.2), fontsize=7)
+        axes.annotate("goal", (5, 14), xytext=(4.6, 14.5), fontsize=7)
     return "The new block lies across the\ndemonstrated paths"
 
 

@@ -17,8 +17,7 @@ RATE = 50.0
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
-    ordinary, reactions = skills.demonstrate(config)
-    learned = skills.Skills(config, ordinary, reactions)
+    learned, reactions = taught(config)
     chosen = shown(config)
     targets = learned.reaction_targets[chosen]
     stages = {}
@@ -37,6 +36,13 @@ def simulate(config: Config, rng: Rng) -> Recording:
     recording = Recording(series=series, frames={"learning": pd.DataFrame(rows)}, steps=len(rows))
     recording.frames["baselines"] = baselines(config, learned, reactions[chosen])
     return recording
+
+
+def taught(config: Config) -> tuple[skills.Skills, np.ndarray]:
+    """The skills learned, and the reactions (conditions, repetitions, N, 3) [cm] that taught them."""
+    ordinary, reactions = skills.demonstrate(config)
+    reactions = skills.with_recorded_reactions(config, reactions)
+    return skills.Skills(config, ordinary, reactions), reactions
 
 
 def shown(config: Config) -> list[int]:
@@ -123,6 +129,5 @@ def normalisation(config: Config) -> Metrics:
 
 def ordinary_change(recording: Recording, config: Config) -> float:
     """Largest difference [cm] of the ordinary movement before and after the reactions are learned, Delta f = 0."""
-    ordinary, reactions = skills.demonstrate(config)
-    learned = skills.Skills(config, ordinary, reactions)
+    learned, _ = taught(config)
     return float(np.abs(learned.perform(np.zeros((1, len(recording.time), 3)))[0] - recording["ordinary"]).max())

@@ -27,10 +27,10 @@ from dexrepro.robots.kinematics import forward
 CHECKED = 25  # points of the path whose reach is checked
 
 
-def model(arm: Arm, gravity: Sequence[float], mass_error: float) -> RigidBodyModel:
+def model(arm: Arm, gravity: Sequence[float], mass_error: float, key: str = "arm") -> RigidBodyModel:
     """What laws may know of the arm."""
     if not isinstance(arm, Arm):
-        raise ValueError("scene.arm is no arm: name one by its _target_, such as dexrepro.robots.urdf.from_urdf")
+        raise ValueError(f"scene.{key} is no arm: name one by its _target_, such as dexrepro.robots.urdf.from_urdf")
     if not _vector(gravity):
         raise ValueError(f"scene.gravity = {gravity} is not allowed: it must be three numbers")
     return RigidBodyModel(arm, gravity, mass_error)
@@ -42,8 +42,9 @@ def _vector(value: Any, length: int = 3) -> bool:
 
 
 def scene(config: Config, noise: np.random.Generator | None = None) -> World:
-    """The arm, the leader as a small sphere that is carried along its path, the objects and what else acts on the arm.
+    """The arm, the leader, the objects and what else acts on the arm.
 
+    The leader is an arm of its own, or else a small sphere that is carried along its path.
     noise: random numbers of the sensors, which are exact without.
     """
     given = {name: _blocks(config, name) for name in BLOCKS}
@@ -52,8 +53,11 @@ def scene(config: Config, noise: np.random.Generator | None = None) -> World:
     arm = loaded(config.arm, *given["payload"])
     sensor = Sensor(**given["sensor"][0]) if given["sensor"] and noise else Sensor()
     world.add_arm("arm", arm, start(config, path), contacts=bool(config.box), sensor=sensor, rng=noise)
-    world.add_sphere("leader", 0.02, path(0.0).position.tolist(), colour=(0.84, 0.37, 0.0, 1.0), collides=False)
-    world.add(_Carried(path))
+    if config.leader_arm:
+        world.add_arm("leader", config.leader_arm, start(leading(config), path))
+    else:
+        world.add_sphere("leader", 0.02, path(0.0).position.tolist(), colour=(0.84, 0.37, 0.0, 1.0), collides=False)
+        world.add(_Carried(path))
     for number, object_ in enumerate(given["elastic"]):
         to = object_.pop("to", "leader")
         world.add(Elastic(f"object{number or ''}", ("arm", to), unilateral=True, **object_))
@@ -185,17 +189,33 @@ class _Carried:
         return {}
 
 
+def leading(config: Config) -> Config:
+    """The leader's arm in the place of the arm: on the path itself, under its own law, with an exact model."""
+    arm, law = config.leader_arm, config.leader_law
+    if getattr(law, "kind", getattr(getattr(law, "func", None), "kind", None)) not in ("joint", "end_point"):
+        raise InputError(
+            "scene.leader_law must name a law of kind joint or end_point, which takes the arm along its path"
+        )
+    try:
+        exact = model(arm, config.gravity, 0.0, "leader_arm")
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    return Config({**config, "arm": arm, "law": law, "model": exact, "start": None, "offset": [0.0, 0.0, 0.0]})
+
+
 def simulate(config: Config, rng: Rng) -> Recording:
     path, offset = leader_path(config), np.array(config.offset, dtype=float)
     with scene(config, rng("sensor") if config.get("sensor") else None) as world:
         controller, wanted = driver(config, path, np.array(world.arms["arm"].q))
+        controllers, probes = {"arm": controller}, {"reference": lambda: wanted(world.time)}
+        if config.leader_arm:
+            controllers["leader"], _ = driver(leading(config), path, np.array(world.arms["leader"].q))
+        else:
+            probes["leader.pose"] = lambda: path(world.time).position
         length = np.linalg.norm(offset)
-        recording = world.run(
-            config.duration,
-            {"arm": controller},
-            probes={"leader.pose": lambda: path(world.time).position, "reference": lambda: wanted(world.time)},
-            on_divergence="stop",
-        )
+        recording = world.run(config.duration, controllers, probes=probes, on_divergence="stop")
+    if config.leader_arm:
+        recording.series["leader.pose"] = recording["leader.tip"]
     force = recording["arm.force"]
     recording.series["force_along"] = force @ offset / length if length else np.linalg.norm(force, axis=1)
     return recording

@@ -1,0 +1,51 @@
+"""The keys that commands take as ``key=value``: help, check and completion are made from this table."""
+
+from __future__ import annotations
+
+KEYS = {
+    "chapter": ("N", "chapters, such as 2 or 1,3; else those that the other keys imply, else all"),
+    "only": ("EXPERIMENT", "one experiment, or several: only=a,b"),
+    "figure": ("ID", "what makes a figure or table, such as 2.7 or T2.1"),
+    "case": ("NAME", "some cases, by name or pattern such as tuned_*: a result of its own below runs/"),
+    "seed": ("NUMBER", "root of every random number (0)"),
+    "engine": ("NAME", "pybullet or, as a check on the engine, mujoco"),
+    "results": ("DIR", "where results are (results)"),
+    "workers": ("NUMBER", "processes; one a core where it is not given"),
+    "case_timeout": ("SECONDS", "ends a case after so much wall time"),
+    "force": ("true|false", "run even what is there already"),
+    "quiet": ("true|false", "say only what went wrong"),
+    "gui": ("true|false", "show the simulation live in a window"),
+    "format": ("KIND", "draw: pdf, png or svg besides the usual files; render: gif or mp4"),
+    "style": ("NAME", "draw: slides, paper or dark besides the usual figures"),
+    "allow": ("MODULE", "modules of somebody else's result that you trust"),
+    "claim": ("ID", "the study of one claim's experiment"),
+    "samples": ("NUMBER", "draws; where it is not given, until every claim is decided (16, 40, 100)"),
+    "hours": ("NUMBER", "begin no draw after so many hours"),
+    "tune.case": ("EXPERIMENT.CASE", "the case to be tuned"),
+    "compare.case": ("EXPERIMENT.CASE", "the cases, with commas between them, whose law is replaced"),
+    "laws": ("FOLDER", "a folder with laws, which are to stand beside the book's"),
+    "minimise": ("METRIC", "the metric of the case that is to be least"),
+    "maximise": ("METRIC", "or the one that is to be greatest"),
+    "budget": ("NUMBER", "runs (32)"),
+    "jobs": ("NUMBER", "jobs that share the draws, by hydra/launcher=joblib, ray or submitit_slurm"),
+}  # fmt: skip
+SELECTION = ("chapter", "only", "figure", "results")
+TAKEN = {
+    "run": (*SELECTION, "case", "seed", "engine", "workers", "case_timeout", "force", "quiet", "gui"),
+    "check": (*SELECTION, "case", "workers"),
+    "draw": (*SELECTION, "case", "format", "style"),
+    "report": ("results",),
+    "crosscheck": (*SELECTION, "workers"),
+    "show": ("results",),
+    "study": (*SELECTION, "claim", "samples", "hours", "jobs", "workers"),
+    "tune": ("case", "minimise", "maximise", "budget", "results", "workers"),
+    "compare": ("laws", "case", "minimise", "maximise", "budget", "results", "workers"),
+    "render": (*SELECTION, "case", "format", "allow"),
+}
+"""What each command takes."""
+
+
+def described(command: str) -> str:
+    """The keys of a command for its help, a line each."""
+    rows = ((key, *KEYS.get(f"{command}.{key}", KEYS[key])) for key in TAKEN[command])
+    return "keys:\n" + "\n".join(f"  {f'{key}={value}':<22}  {meaning}" for key, value, meaning in rows)

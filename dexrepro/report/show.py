@@ -1,0 +1,268 @@
+"""All there is about one thing, for the terminal: a claim, figure, table, experiment, erratum, equation, symbol, law or
+parameter."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from dexrepro import baselines, chapters, study
+from dexrepro.claims import Claim, Erratum
+from dexrepro.config import compose_chapter, experiment_cases, resolved_block
+from dexrepro.errors import InputError, nearest
+from dexrepro.plan import matches
+from dexrepro.provenance import provenance
+from dexrepro.report import equations, parameters, relations, sources, verdicts
+from dexrepro.report.listing import chapter_listing
+from dexrepro.storage import read_json
+
+
+def show(word: str, results: Path) -> Iterator[str]:
+    """Lines about whatever has this name. Raises InputError with the nearest names where nothing has."""
+    asked = re.sub(r"^(eqs?|fig|table|figure|equation)\.?\s*", "", word.strip(), flags=re.IGNORECASE).strip("() ")
+    only_equation = word.strip().lower().startswith(("eq", "("))
+    found = False
+    for kind in (_equation,) if only_equation else KINDS:
+        for line in kind(asked, results):
+            found = True
+            yield line
+    if not found:
+        raise InputError(f"nothing is called '{word}': {nearest(asked, _names())}")
+
+
+def _names() -> list[str]:
+    """What can be asked for, for a suggestion."""
+    listed = [chapter_listing(number) for number in chapters.numbers()]
+    names = [item["id"] for chapter in listed for item in (*chapter["claims"], *chapter["errata"])]
+    for chapter in listed:
+        for experiment in chapter["experiments"]:
+            names += [experiment["name"], *experiment["figures"], *experiment["tables"]]
+        for key, origin in provenance(chapter["chapter"]).items():
+            names += [key, *([origin.symbol] if origin.symbol else [])]
+    return [*dict.fromkeys([*names, *_laws()])]
+
+
+# ------------------------------------------------------------------------------------------------------------ claims
+
+
+def _claim(word: str, results: Path) -> Iterator[str]:
+    for number in chapters.numbers():
+        for claim in chapters.load(number).claims:
+            if claim.id.lower() == word.lower():
+                yield from _about_claim(number, claim, results)
+
+
+def _about_claim(number: str, claim: Claim, results: Path) -> Iterator[str]:
+    name, chapter, composed = claim.experiment, chapters.load(number), compose_chapter(number)
+    where, metrics = _metrics(number, name, results) if name else ("", {})
+    row = next((s["claims"].get(claim.id) for s in study.stored(results) if s["experiment"] == name), None)
+    shown: dict[str, Any] = claim.evaluate(metrics).as_dict()
+    shown |= {"study": row, "robustness": verdicts.robustness(row)}
+    place = ", ".join(filter(None, [f"Fig. {claim.figure}" if claim.figure else "", _section(claim.where), name]))
+    yield f"{claim.id}  {shown['verdict']}{_margin(shown['margin'])}  ({place or 'no experiment'})"
+    yield f"  {claim.statement}{'' if claim.source == 'book' else '  (ours, not the book)'}"
+    if claim.not_testable:
+        yield f"  not testable: {claim.not_testable}"
+    else:
+        yield f"  holds if    {claim.predicate}"
+        yield f"  values      {', '.join(f'{key} = {_number(value)}' for key, value in shown['values'].items())}"
+        yield f"              {where}"
+        if claim.credits:
+            yield f"  credits     {claim.credits}"
+        if claim.control:
+            yield f"  control     {claim.control}{_margin(shown['control_margin'])}"
+        yield f"  tested      {verdicts.noticed(shown)}"
+        yield f"  study       {verdicts.often(shown)}"
+        if row and row["parameter"]:
+            yield f"              its margin follows {row['parameter']} most"
+    if claim.printed:
+        yield f"  as printed  {claim.printed}{_margin(shown['printed_margin'])}"
+    for text, margin in shown["readings"].items():
+        yield f"  reading     {text}{_margin(margin)}"
+    for label in ("searched", "by_construction", "note"):
+        if shown[label]:
+            yield f"  {label.replace('_', ' '):<12}{shown[label]}"
+    errata = relations.errata_of(claim, chapter.errata, composed)
+    for erratum in errata:
+        yield f"  erratum     {erratum.id} {erratum.equation}: {erratum.summary}"
+    texts = " ".join([claim.statement, shown["note"], claim.where, *(erratum.equation for erratum in errata)])
+    if mentioned := equations.numbers(texts):
+        yield f"  equations   {', '.join(f'({equation})' for equation in mentioned)}"
+    if name:
+        for key, origin in study.parameters(number, name).items():
+            row = {"key": key, "value": parameters.value_of(composed, key), **parameters.shown(origin)}
+            yield f"  varies      {_parameter(row)}"
+    yield from _written(number, claim.id)
+    if name:
+        yield from _code(number, name)
+        cases = {part[1] for part in (metric.split(".") for metric in claim.metrics) if len(part) > 2}
+        every = any(metric.count(".") < 2 for metric in claim.metrics)
+        some = "" if every else f" 'case=[{','.join(sorted(cases))}]'"
+        yield f"  $ dexrepro run chapter={number} only={name}{some}"
+        yield f"  $ dexrepro check chapter={number} only={name}"
+        yield f"  $ dexrepro study chapter={number} claim={claim.id}"
+
+
+def _metrics(number: str, name: str, results: Path) -> tuple[str, dict[str, Any]]:
+    """The metrics of an experiment's result here, else those stored; and which they are."""
+    folder = results / f"chapter{number}" / name
+    if (folder / "metrics.json").exists():
+        return f"as run here, {folder}", read_json(folder / "metrics.json")
+    entries = baselines.Baseline.of(number, name).metrics
+    return "as stored with dexrepro", {key: entry["value"] for key, entry in entries.items()}
+
+
+def _section(where: str) -> str:
+    return re.sub(r"^(?=\d)", "Sect. ", where)
+
+
+def _margin(value: float | None) -> str:
+    return "" if value is None else f", margin {value:+.3g}"
+
+
+def _number(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else "undefined" if value is None else str(value)
+
+
+# ------------------------------------------------------------------------------- experiments, figures, tables, errata
+
+
+def _made(word: str, results: Path) -> Iterator[str]:
+    """An experiment by its name, or the one that makes a figure or table."""
+    for number in chapters.numbers():
+        for entry in chapter_listing(number)["experiments"]:
+            made = [*entry["figures"], *entry["tables"]]
+            asked = [identifier for identifier in made if matches(word, identifier)]
+            if word == entry["name"] or asked:
+                yield from _about_experiment(number, entry, asked, results)
+
+
+def _about_experiment(number: str, entry: dict[str, Any], asked: list[str], results: Path) -> Iterator[str]:
+    experiment = chapters.load(number).experiment(entry["name"])
+    yield f"{', '.join(asked) or entry['name']}  of chapter {number}: {entry['summary']}"
+    for identifier in asked or (*entry["figures"], *entry["tables"]):
+        figure = experiment.figures.get(identifier)
+        yield f"  {identifier:<10}  {figure.caption if figure else experiment.tables[identifier]}"
+    folder = results / f"chapter{number}" / entry["name"]
+    if folder.exists():
+        yield f"  result      {folder}"
+    yield f"  cases       {', '.join(entry['cases'])}"
+    _, metrics = _metrics(number, entry["name"], results)
+    concerned = [c for c in chapters.load(number).claims_of(entry["name"]) if not asked or _concerns(c, asked)]
+    for claim in concerned:
+        found = claim.evaluate(metrics)
+        yield f"  {claim.id:<10}  {found.verdict}{_margin(found.margin)}: {claim.statement}"
+    if not asked:
+        composed, origins = compose_chapter(number), provenance(number)
+        for row in parameters.table(entry["name"], composed, origins, {}):
+            yield f"  parameter   {_parameter(row)}"
+    yield from _code(number, entry["name"])
+    yield f"  $ dexrepro run {f'figure={asked[0]}' if asked else f'chapter={number} only={experiment.name}'}"
+
+
+def _concerns(claim: Claim, asked: list[str]) -> bool:
+    return any(matches(claim.figure, identifier) or claim.figure == identifier for identifier in asked)
+
+
+def _erratum(word: str, results: Path) -> Iterator[str]:
+    for number in chapters.numbers():
+        for erratum in chapters.load(number).errata:
+            if erratum.id.lower() == word.lower():
+                yield from _about_erratum(number, erratum, results)
+
+
+def _about_erratum(number: str, erratum: Erratum, results: Path) -> Iterator[str]:
+    yield f"{erratum.id}  {erratum.kind} in {erratum.equation}"
+    yield f"  {erratum.summary}"
+    if erratum.correction:
+        yield f"  correction  {erratum.correction}"
+    for name in erratum.evidence:
+        value = _metrics(number, name.partition(".")[0], results)[1].get(name)
+        yield f"  shown by    {name} = {_number(value)}"
+    composed, touching = compose_chapter(number), []
+    for claim in chapters.load(number).claims:
+        if relations.errata_of(claim, [erratum], composed):
+            touching.append(claim.id)
+    if touching:
+        yield f"  touches     {', '.join(touching)}"
+    yield from _written(number, erratum.id)
+    if erratum.switch:
+        yield f"  $ dexrepro run chapter={number} {erratum.switch}"
+
+
+# ------------------------------------------------------------------------------- equations, symbols, parameters, laws
+
+
+def _equation(word: str, results: Path) -> Iterator[str]:
+    if re.fullmatch(r"\d+\.\d+[a-z]?", word):
+        mentions = [mention for mention in equations.index() if mention.equation == word]
+        yield from [f"Equation ({word})"] if mentions else []
+        for mention in mentions:
+            yield f"  {mention.kind:<10}  {sources.label(mention.path)}:{mention.line}  {mention.name}: {mention.text}"
+
+
+def _set(word: str, results: Path) -> Iterator[str]:
+    """A parameter by its key, or by the end of it, and a symbol by how the configuration writes it."""
+    for number in chapters.numbers():
+        composed, origins = compose_chapter(number), provenance(number)
+        for key in [key for key in origins if word in (key, key.partition(".")[2]) or key.endswith(f".{word}")]:
+            row = {"key": key, "value": parameters.value_of(composed, key), **parameters.shown(origins[key])}
+            yield f"{_parameter(row)}  (chapter {number})"
+        for row in parameters.index(composed, origins, ()):
+            if row["plain"] == word:
+                yield f"{_parameter(row)}  (chapter {number})"
+
+
+def _parameter(row: dict[str, Any]) -> str:
+    said = "; ".join(filter(None, [f"{row['kind']} {row['text']}".strip(), row["range"]]))
+    symbol = f"{row['plain']} = " if row["plain"] else ""
+    return f"{row['key']} = {symbol}{row['value']} {row['unit']}  [{said}]"
+
+
+def _laws() -> dict[str, dict[str, list[str]]]:
+    """Classes and functions that configurations name, by their own name: {dotted name: experiments that use it}."""
+    found: dict[str, dict[str, list[str]]] = {}
+    for number in chapters.numbers():
+        composed = compose_chapter(number)
+        for name in chapters.names(number):
+            text = str([composed[name], resolved_block(composed, name)])
+            for target in dict.fromkeys(re.findall(r"'_target_': '(dexrepro[\w.]+)'", text)):
+                found.setdefault(target.rpartition(".")[2], {}).setdefault(target, []).append(name)
+    return found
+
+
+def _law(word: str, results: Path) -> Iterator[str]:
+    for target, experiments in _laws().get(word.rpartition(".")[2], {}).items():
+        (thing,) = relations.laws({"_target_": target}) or (None,)
+        if thing is None or (word != target and "." in word):
+            continue
+        file, line = sources.place(thing)
+        yield f"{target}  {sources.label(file)}:{line}"
+        yield from (f"  {text}".rstrip() for text in (inspect.getdoc(thing) or "").splitlines())
+        yield f"  used by     {', '.join(experiments)}"
+
+
+# -------------------------------------------------------------------------------------------------------------- code
+
+
+def _written(number: str, identifier: str) -> Iterator[str]:
+    if found := relations.definitions(chapters.load(number).folder).get(identifier):
+        yield f"  written in  {sources.label(found[0])}:{found[1]}"
+
+
+def _code(number: str, name: str) -> Iterator[str]:
+    """Lines of the configuration, the experiment and the laws that it names."""
+    from dexrepro.config import config_files
+
+    experiment, composed = chapters.load(number).experiment(name), compose_chapter(number)
+    yield f"  values in   {sources.label(config_files(number)[name])}"
+    yield f"  simulation  {sources.label(experiment.folder / 'experiment.py')}"
+    for thing in relations.laws([resolved_block(composed, name), experiment_cases(composed, name)]):
+        file, line = sources.place(thing)
+        yield f"  uses        {thing.__qualname__}, {sources.label(file)}:{line}"
+
+
+KINDS: tuple[Callable[[str, Path], Iterator[str]], ...] = (_claim, _erratum, _made, _equation, _law, _set)
