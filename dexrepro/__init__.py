@@ -22,24 +22,25 @@ __all__ = ["__version__", "load", "run"]
 
 
 def run(chapter: int | str, overrides: list[str] | None = None, **settings: Any) -> dict[str, Result]:
-    """Run experiments as ``dexrepro run`` does; returns ``{experiment: Result}``.
+    """Run experiments as ``dexrepro run`` does; returns ``{experiment: Result}``, which a notebook shows.
 
     settings: ``only``, ``figure``, ``seed``, ``results``, ``workers``, ``force``; overrides: Hydra's grammar, for
-    example ``["movement_estimation.stiffness=[25,60]"]``. Raises RuntimeError with one sentence a failed case, and
-    dexrepro.errors.InputError for input that cannot be used.
+    example ``["movement_estimation.stiffness=[25,60]"]``. In a notebook it says what is finished. Raises RuntimeError
+    with one sentence a failed case, and dexrepro.errors.InputError for input that cannot be used.
     """
     from dexrepro.plan import plan_chapter
+    from dexrepro.progress import of_session
     from dexrepro.runner import run_plans
     from dexrepro.selection import quoted
-    from dexrepro.storage import Result
+    from dexrepro.storage import Result, Results
 
     workers, force = settings.pop("workers", None), settings.pop("force", False)
     given = [f"{key}={_text(value)}" for key, value in settings.items()]
     plans, _ = plan_chapter(str(chapter), [*given, *map(quoted, overrides or [])])
-    outcome = run_plans(plans, workers=workers, force=force)
+    outcome = run_plans(plans, workers=workers, force=force, progress=of_session())
     if outcome.failures:
         raise RuntimeError("; ".join(f"{name} failed: {text}" for name, text in outcome.failures.items()))
-    return {name: Result(folder) for name, folder in outcome.folders.items()}
+    return Results((name, Result(folder)) for name, folder in outcome.folders.items())
 
 
 def load(folder: str | Path) -> Result:

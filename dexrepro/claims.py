@@ -262,12 +262,12 @@ class Claim:
         return AFTER_CORRECTION if printed is not None and not printed > 0 else REPRODUCED
 
 
-def filled(text: str, metrics: Metrics) -> str:
+def filled(text: str, values: Mapping[str, Any]) -> str:
     """A text whose ``{experiment.case.metric:format}`` are replaced by the run's numbers ("?" where absent)."""
 
     def number(match: re.Match[str]) -> str:
-        value = metrics.get(match[1])
-        return "?" if value is None else format(value, match[2] or ".3g")
+        value = values.get(match[1])
+        return "?" if value is None else format(value, match[2] or ".3g") if not isinstance(value, str) else value
 
     return re.sub(r"\{(\w+(?:\.\w+)+)(?::([^{}]*))?\}", number, text)
 

@@ -260,6 +260,7 @@ def _sentences(outcome: Any) -> list[str]:
 
 def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     from dexrepro.config import compose_chapter
+    from dexrepro.physics.engine import REFERENCE
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
     from dexrepro.runner import Outcome, run_plans, summary_rows
@@ -275,6 +276,11 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
         chapter_plans, chapter_skipped = plan_chapter(number, own, composed=settings)
         plans += chapter_plans
         skipped |= chapter_skipped
+    if settings.get("engine") is None and any(REFERENCE != plan.engine in plan.versions for plan in plans):
+        err.print(
+            "PyBullet is not installed here (its wheels end at Python 3.11): MuJoCo simulates the arms; how its "
+            "numbers differ from those stored is in docs/how-to/engines.md"
+        )
     quiet = bool(settings.get("quiet"))
     progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
     with progress if isinstance(progress, Bar) else nullcontext():
@@ -430,12 +436,12 @@ def crosscheck_command(options: argparse.Namespace) -> int:
     for number in numbers:
         for item in crosscheck.run(number, only, results, workers):
             crosscheck.keep([item], target)
-            matter = [entry for entry in item.metrics if entry.matters]
+            known = [entry for entry in item.metrics if entry.spread]
             turned = [f"{key} {' under PyBullet, '.join(item.claims[key])} under MuJoCo" for key in item.turned]
             out.print(
                 f"{item.experiment}: {item.compared} numbers, {len(item.metrics)} outside their tolerance, "
-                f"{len(matter)} also outside a study's range; {len(item.claims)} claims, {len(turned)} turn"
-                + "".join(f"\n  {text}" for text in turned),
+                f"{sum(entry.matters for entry in known)} of the {len(known)} that a study has outside its range, too; "
+                f"{len(item.claims)} claims, {len(turned)} turn" + "".join(f"\n  {text}" for text in turned),
                 markup=False,
             )
     out.print(str(target), markup=False)
@@ -548,12 +554,15 @@ def render_command(options: argparse.Namespace) -> int:
 def study_command(options: argparse.Namespace) -> int:
     """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=N] [hours=H] [jobs=N hydra/launcher=...]``."""
     from dexrepro import study
+    from dexrepro.config import check_engine
+    from dexrepro.physics.engine import default
     from dexrepro.selection import selected
 
     if any(text.startswith(("jobs=", "hydra")) for text in options.selection):
         return _study_jobs(options)
     numbers, only, results, workers, values = selected(options.selection, "study")
     samples, hours = _samples(values.get("samples")), _hours(values.get("hours"))
+    check_engine(engine := values.get("engine", default()))
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
             if options.confirm:
@@ -562,7 +571,9 @@ def study_command(options: argparse.Namespace) -> int:
                 out.print(f"{name}: {carried} cases of samples carried over{differ}", markup=False)
                 continue
             try:
-                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update)
+                path = study.run(
+                    number, name, samples, results, workers=workers, hours=hours, update=options.update, engine=engine
+                )
             except study.SamplesFailed as error:
                 err.print(str(error), markup=False)
                 return FAILED

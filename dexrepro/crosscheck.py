@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from dexrepro import chapters, study
+from dexrepro import chapters
 from dexrepro.baselines import Baseline, agrees, baseline_dir
 from dexrepro.errors import InputError
 from dexrepro.plan import Plan, plan_chapter, uses_engine
@@ -83,16 +83,18 @@ def compare(plan: Plan, folder: Path) -> Comparison:
         Difference(name, baseline.metrics[name]["value"], made.get(name), _spread([row.get(name) for row in samples]))
         for name in outside
     ]
-    verdicts = {claim["id"]: claim["verdict"] for claim in read_json(folder / "claims.json")}
+    verdicts = {claim.id: claim.evaluate(made).verdict for claim in chapters.load(plan.chapter).claims}
     claims = {key: (verdict, verdicts.get(key, "")) for key, verdict in baseline.claims.items()}
     version = plan.versions[OTHER]
     return Comparison(plan.chapter, plan.experiment, version, len(baseline.metrics), differences, claims)
 
 
 def _samples(plan: Plan) -> list[Mapping[str, float | None]]:
+    from dexrepro.study import shipped_samples  # which asks here whether samples of the other engine count
+
     return [
         flat(plan.experiment, {case: row.get("metrics", {}) for case, row in entry["cases"].items()})
-        for entry in study.shipped_samples(plan.experiment)
+        for entry in shipped_samples(plan.experiment)
     ]
 
 
@@ -135,5 +137,14 @@ def _of(row: Mapping[str, Any]) -> Comparison:
 
 def verdicts(results: Path) -> dict[str, tuple[str, str]]:
     """The verdict of every claim under both engines, shipped or made here, where it is known."""
-    rows = {item.experiment: item for place in (True, False) for item in stored(table(results, place))}
-    return {key: pair for item in rows.values() for key, pair in item.claims.items()}
+    return {key: pair for item in _known(results).values() for key, pair in item.claims.items()}
+
+
+def agrees_on(experiment: str, results: Path) -> bool:
+    """Whether every claim of an experiment is known to have one verdict under both engines."""
+    item = _known(results).get(experiment)
+    return item is not None and not item.turned
+
+
+def _known(results: Path) -> dict[str, Comparison]:
+    return {item.experiment: item for place in (True, False) for item in stored(table(results, place))}

@@ -104,7 +104,7 @@ Drawings: TypeAlias = "dict[str, matplotlib.figure.Figure]"  # by the number of 
 class Figure:
     """What surrounds a figure: caption (what was simulated, what the book shows) and one-sentence alternative text.
 
-    Numbers of a run stand in them as in a claim's note, ``{experiment.case.metric:.3g}``.
+    ``{experiment.case.metric:.3g}`` in them is filled from the result, ``{experiment.key}`` from its configuration.
     """
 
     caption: str

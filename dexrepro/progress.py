@@ -62,6 +62,11 @@ class Lines(Silent):
         self.note(f"{name}: failed: {sentence}")
 
 
+def of_session() -> Silent:
+    """What a Python session sees: a line a finished case in a notebook, nothing elsewhere."""
+    return Lines(Console(force_jupyter=False)) if Console().is_jupyter else Silent()
+
+
 class Bar(Lines):
     """A bar over all cases, with simulated seconds and speed of those under way."""
 

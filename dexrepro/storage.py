@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import hashlib
+import html
 import json
 import math
 import os
@@ -233,3 +235,28 @@ class Result:
 
     def __repr__(self) -> str:
         return f"Result({str(self.folder)!r}, {len(self.metrics)} metrics, {len(self.claims)} claims)"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the claims with their verdicts, and the figures."""
+        cells = [(c["id"], c["statement"], c["verdict"], _short(c["margin"]), c["note"]) for c in self.claims]
+        head = "".join(f"<th>{name}</th>" for name in ("claim", "statement", "verdict", "margin", "note"))
+        rows = ("".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row) for row in cells)
+        table = f"<table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>" if cells else ""
+        differs = f"<p>differs from the book in: {html.escape(', '.join(self.run['differs']))}</p>"
+        images = (
+            f'<img alt="{name}" style="max-width:100%" src="data:image/png;base64,'
+            f'{base64.b64encode(path.read_bytes()).decode()}">' for name, path in self.figures.items()
+        )  # fmt: skip
+        folder = html.escape(str(self.folder))
+        return f"<h4>{folder}</h4>{differs if self.run.get('differs') else ''}{table}{''.join(images)}"
+
+
+class Results(dict[str, Result]):
+    """Results by experiment."""
+
+    def _repr_html_(self) -> str:
+        return "".join(result._repr_html_() for result in self.values())
+
+
+def _short(number: float | None) -> str:
+    return "" if number is None else f"{number:.3g}"

@@ -17,6 +17,7 @@ import json
 import re
 import time
 import zlib
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
@@ -25,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from dexrepro import baselines, chapters
+from dexrepro import baselines, chapters, crosscheck
 from dexrepro.arrays import Array
 from dexrepro.baselines import baseline_dir
 from dexrepro.case import live
@@ -35,7 +36,9 @@ from dexrepro.claims import LOOKS, OPEN, Claim, robustness
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Metrics
-from dexrepro.plan import content_of
+from dexrepro.physics import engine as physics
+from dexrepro.physics.engine import REFERENCE
+from dexrepro.plan import content_of, uses_engine
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.provenance import Provenance, provenance
 from dexrepro.runner import flat, summarise
@@ -127,17 +130,21 @@ def within(share: float, low: float, high: float, whole: bool = False) -> float:
     return round(value) if whole else float(f"{value:.6g}")
 
 
-def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]) -> dict[str, Any]:
+def evaluate(
+    chapter: str, experiment: str, index: int, known: Mapping[str, Any], engine: str = REFERENCE
+) -> dict[str, Any]:
     """One sample: what was drawn and, of every case that a claim is about, the key of its simulation and its metrics.
 
-    known: cases that were run before, by the key of their simulation; they are taken over.
+    known: cases that were run before, by the key of their simulation; they are taken over. engine: of the simulations;
+    a sample says which it was, where it is not that of the baselines.
     """
+    physics.use(engine)
     values, block = draw(chapter, experiment, index)
     seed = int(values["seed"])
     loaded = chapters.load(chapter)
     definition, cases = loaded.experiment(experiment), {}
     for case in _cases_of(loaded.claims_of(experiment), block["cases"]):
-        config = {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case}
+        config = _values(block, case, seed, engine)
         content = content_of(definition, config)
         if content in known:
             cases[case] = known[content]
@@ -148,22 +155,35 @@ def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]
         except Exception as problem:
             found = {"error": f"{type(problem).__name__}: {' '.join(str(problem).split())}"}
         cases[case] = {"content": content, **found, "seconds": round(time.perf_counter() - start, 3)}
-    return {"index": index, "values": values, "cases": cases}
+    return {"index": index, "values": values, "cases": cases, **_told(engine)}
 
 
-def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any]) -> bool:
-    """Whether a stored sample has every case that the claims are about, under its present simulation."""
-    contents = _contents(chapter, experiment, entry["index"])
+def _values(block: Mapping[str, Any], case: str, seed: int, engine: str) -> dict[str, Any]:
+    return {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case, **_told(engine)}
+
+
+def _told(engine: str) -> dict[str, str]:
+    return {} if engine == REFERENCE else {"engine": engine}
+
+
+def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any], results: Path) -> bool:
+    """Whether a stored sample has every case that the claims are about, under its present simulation.
+
+    One of another engine counts as long as the cross-check shows that it decides every claim alike.
+    """
+    if "engine" in entry and not crosscheck.agrees_on(experiment, results):
+        return False
+    contents = _contents(chapter, experiment, entry)
     return all(entry["cases"].get(case, {}).get("content") == content for case, content in contents.items())
 
 
-def _contents(chapter: str, experiment: str, index: int) -> dict[str, str]:
+def _contents(chapter: str, experiment: str, entry: Mapping[str, Any]) -> dict[str, str]:
     """The key of the present simulation of every case that a claim is about, in one sample."""
-    values, block = draw(chapter, experiment, index)
+    values, block = draw(chapter, experiment, entry["index"])
     loaded, seed = chapters.load(chapter), int(values["seed"])
     definition = loaded.experiment(experiment)
     return {
-        case: content_of(definition, {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case})
+        case: content_of(definition, _values(block, case, seed, entry.get("engine", REFERENCE)))
         for case in _cases_of(loaded.claims_of(experiment), block["cases"])
     }
 
@@ -180,10 +200,13 @@ def confirm(chapter: str, experiment: str, results: Path, update: bool = False) 
     old = [
         entry
         for entry in entries.values()
-        if not _is_present(chapter, experiment, entry)
+        if not _is_present(chapter, experiment, entry, results)
         and entry["values"] == draw(chapter, experiment, entry["index"])[0]
     ]
-    again = {entry["index"]: evaluate(chapter, experiment, entry["index"], {}) for entry in old[:1] + old[-1:]}
+    again = {
+        entry["index"]: evaluate(chapter, experiment, entry["index"], {}, entry.get("engine", REFERENCE))
+        for entry in old[:1] + old[-1:]
+    }
     known = baselines.stored(chapter)[experiment].metrics
     ran = {case for sample in again.values() for case in sample["cases"]}
     same = {
@@ -196,7 +219,7 @@ def confirm(chapter: str, experiment: str, results: Path, update: bool = False) 
     }
     carried = 0
     for entry in old:
-        for case, content in _contents(chapter, experiment, entry["index"]).items():
+        for case, content in _contents(chapter, experiment, entry).items():
             if case in same and case in entry["cases"] and entry["cases"][case]["content"] != content:
                 entry["cases"][case]["content"] = content
                 carried += 1
@@ -249,13 +272,22 @@ def run(
     workers: int | None = None,
     hours: float | None = None,
     update: bool = False,
+    engine: str = REFERENCE,
 ) -> Path:
     """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path.
 
-    samples: None takes as many as decide every claim, 100 at most. ``update`` renews the study that is shipped. Raises
-    InputError where a summary of more samples, of another configuration, would be replaced, and SamplesFailed, at the
-    end, where a sample could not be made.
+    samples: None takes as many as decide every claim, 100 at most. ``update`` renews the study that is shipped. engine:
+    of the samples made now. Raises InputError where a summary of more samples, of another configuration, would be
+    replaced, or where the engine is not known to decide every claim as that of the baselines does, and SamplesFailed,
+    at the end, where a sample could not be made.
     """
+    if not uses_engine(chapters.load(chapter).experiment(experiment)):
+        engine = REFERENCE
+    if engine != REFERENCE and not crosscheck.agrees_on(experiment, results):
+        raise InputError(
+            f"engine = {engine} is not allowed for a study of {experiment}: its claims are not known to have the same "
+            f"verdicts under both engines; ask: dexrepro crosscheck chapter={chapter} only={experiment}"
+        )
     target = summary_file(experiment, results, update)
     for folder in (target.parent, _folder(results)):
         folder.mkdir(parents=True, exist_ok=True)
@@ -266,7 +298,7 @@ def run(
         done = _kept(chapter, experiment, results)
         with Pool(workers) as pool:
             for index in (index for index in range(look) if index not in done):
-                pool.add(index, contribute, chapter, experiment, index, results, deadline)
+                pool.add(index, contribute, chapter, experiment, index, results, deadline, engine)
             failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
         with locked(_folder(results)):  # who ends last sees every sample
             entries = list(_kept(chapter, experiment, results).values())
@@ -293,7 +325,9 @@ def _refuse_fewer(chapter: str, experiment: str, samples: int, results: Path, ta
         )
 
 
-def contribute(chapter: str, experiment: str, index: int, results: Path, deadline: float) -> None:
+def contribute(
+    chapter: str, experiment: str, index: int, results: Path, deadline: float, engine: str = REFERENCE
+) -> None:
     """Evaluate one sample and add its line, unless another process does or has done so, or it is too late."""
     with claimed(_folder(results), f"{experiment}.{index}", wait=False) as mine:
         if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index):
@@ -304,7 +338,7 @@ def contribute(chapter: str, experiment: str, index: int, results: Path, deadlin
             if entry["index"] == index
             for row in entry["cases"].values()
         }
-        line = _line(evaluate(chapter, experiment, index, known))
+        line = _line(evaluate(chapter, experiment, index, known, engine))
         with locked(_folder(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
             file.seek(max(file.tell() - 1, 0))
             cut_short = file.read(1) not in (b"", b"\n")
@@ -315,7 +349,7 @@ def _kept(chapter: str, experiment: str, results: Path, only: int | None = None)
     """The samples there are, shipped or made here, of the present simulations, in the order of index."""
     found = {}
     for entry in _all(experiment, results):
-        if only in (None, entry["index"]) and _is_present(chapter, experiment, entry):
+        if only in (None, entry["index"]) and _is_present(chapter, experiment, entry, results):
             found[entry["index"]] = {**entry, "values": draw(chapter, experiment, entry["index"])[0]}
     return dict(sorted(found.items()))
 
@@ -398,11 +432,13 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
             "quantiles": np.quantile(margins, QUANTILES).tolist(), "least": float(margins.min()),
             "boundary": _boundary(parameter, pairs),
         }  # fmt: skip
+    engines = dict(sorted(Counter(entry.get("engine", REFERENCE) for entry in entries).items()))
     failed = sum(any("error" in row for row in entry["cases"].values()) for entry in entries)
     varied = {key: list(o.words) if o.drawn else [o.low, o.high] for key, o in origins.items()}
     seconds = sum(row.get("seconds", 0.0) for entry in entries for row in entry["cases"].values())
     return {"chapter": chapter, "experiment": experiment, "samples": len(entries), "failed": failed,
-            "seconds": round(seconds, 1), "varied": varied, "claims": claims}  # fmt: skip
+            "seconds": round(seconds, 1), "varied": varied, "claims": claims,
+            **({"engines": engines} if set(engines) - {REFERENCE} else {})}  # fmt: skip
 
 
 def _numeric(values: Mapping[str, float | str], origins: Mapping[str, Provenance]) -> dict[str, float]:

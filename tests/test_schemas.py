@@ -25,7 +25,7 @@ def valid(name: str, data: Any) -> Any:
 
 
 def test_the_schemas_are_schemas() -> None:
-    assert set(SCHEMAS) == {"metrics", "claims", "run", "baseline", "study", "sample", "list", "check"}
+    assert set(SCHEMAS) == {"metrics", "claims", "run", "baseline", "study", "sample", "list", "check", "crosscheck"}
     for path in SCHEMAS.values():
         Draft202012Validator.check_schema(json.loads(path.read_text("utf-8")))
 
@@ -52,6 +52,7 @@ def test_what_is_shipped_and_listed_is_as_the_schemas_say() -> None:
     assert stored
     for path in stored:
         valid("baseline", json.loads(path.read_text("utf-8")))
+    valid("crosscheck", json.loads((ROOT / "results/baselines/crosscheck.json").read_text("utf-8")))
     for path in (ROOT / "results/baselines/study").glob("*.json"):
         valid("study", json.loads(path.read_text("utf-8")))
 

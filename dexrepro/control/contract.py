@@ -28,6 +28,7 @@ from dexrepro.networks import AdaptiveNetwork
 Law_ = TypeVar("Law_")
 Kind = Literal["joint", "end_point", "holding"]
 EMPTY: Array = np.empty(0)
+NUMBERS = (int, float, np.number, np.ndarray)
 KINDS: tuple[Kind, ...] = ("joint", "end_point", "holding")
 
 
@@ -180,9 +181,9 @@ def check(law: Law_, kind: Kind) -> Law_:
 
 def number(value: object) -> float:
     """A value that is one finite number. Raises Undefined or Unusable."""
-    if not isinstance(value, int | float | np.number | np.ndarray) or np.size(value) != 1:
+    if not isinstance(value, NUMBERS) or (isinstance(value, np.ndarray) and value.size != 1):
         raise Unusable(f"it gave {str(value)[:80]}, and one number is wanted")
-    single = float(np.ravel(value)[0]) if isinstance(value, np.ndarray) else float(value)
+    single = float(value.item() if isinstance(value, np.ndarray) else value)
     if not math.isfinite(single):
         raise Undefined(f"it gave {single}, and a finite number is wanted")
     return single

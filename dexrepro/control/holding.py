@@ -73,13 +73,14 @@ class AutoregressiveHolding:
         self.regressor[1] = position
         estimation_error = self.estimate - (position if target is None else target)
         feedback = self.estimator_gain * estimation_error
-        estimate_rate = (self.weights * self.regressor).sum(0) - feedback  # Eq. (1.29)
+        estimate_rate = np.add.reduce(self.weights * self.regressor) - feedback  # Eq. (1.29)
         reference_rate = estimate_rate - self.gain * error + feedback  # Eq. (1.32)
         if self.adapt:
             self.weights -= self.dt * (estimation_error + self.adaptation * error) * self.regressor  # Eq. (1.30)
         self.estimate = self.estimate + self.dt * estimate_rate
-        limit = self.speed_limit
-        self.reference = self.reference + self.dt * np.minimum(np.maximum(reference_rate, -limit), limit)
+        if (limit := self.speed_limit) < np.inf:
+            reference_rate = np.minimum(np.maximum(reference_rate, -limit), limit)
+        self.reference = self.reference + self.dt * reference_rate
         return self.reference
 
 

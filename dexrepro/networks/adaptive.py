@@ -27,11 +27,12 @@ class AdaptiveNetwork:
         self._weights = np.zeros((outputs, basis.capacity))  # one row an output: long rows, fast updates
         self._change = np.empty_like(self._weights)
         self.features = np.empty(0)
+        self._used = self._weights[:, :0], self._change[:, :0]  # the parts that the present features need
 
     @property
     def weights(self) -> Array:
         """W, shape (features at the last output, outputs); a view."""
-        return self._weights[:, : len(self.features)].T
+        return self._used[0].T
 
     def reset(self, weights: ArrayLike | None = None) -> None:
         """Set the first rows of W to ``weights`` (n, outputs), n <= capacity, and all others to zero."""
@@ -57,13 +58,15 @@ class AdaptiveNetwork:
 
     def output(self, z: ArrayLike, grow: bool = False) -> Array:
         """Y(z), shape (outputs,); ``grow`` lets the basis add a node for ``z`` first."""
-        self.features = self.basis(z, grow)
-        return self._weights[:, : len(self.features)] @ self.features
+        self.features = features = self.basis(z, grow)
+        n = len(features)
+        if n != self._used[0].shape[1]:
+            self._used = self._weights[:, :n], self._change[:, :n]
+        return self._used[0] @ features
 
     def adapt(self, error: Array) -> None:
         """One step of the weight law, at the input of the last :meth:`output`; ``error`` e has shape (outputs,)."""
-        n = len(self.features)
-        weights, change = self._weights[:, :n], self._change[:, :n]
+        weights, change = self._used
         if self.leakage:
             weights *= 1.0 - self.step * self.leakage
         np.multiply((self.step * self.gain * error)[:, None], self.features, out=change)

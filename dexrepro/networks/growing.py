@@ -47,6 +47,7 @@ class GrowingGaussians(Basis):
         self._squared = np.empty(max_nodes)
         self._gaussian = np.empty(max_nodes)
         self._features = np.empty((max_nodes, self.features_per_node))
+        self._scale = -1.0 / self.width**2
         self.reset()
 
     def reset(self, centres: ArrayLike | None = None) -> None:
@@ -54,9 +55,16 @@ class GrowingGaussians(Basis):
         known = np.empty((0, self.dimension)) if centres is None else np.asarray(centres, dtype=float)
         if len(known) > self.max_nodes:
             raise ValueError(f"{len(known)} centres do not fit: the network holds at most {self.max_nodes} nodes")
-        self._count = len(known)
-        self._centres[: self._count] = known
+        self._centres[: len(known)] = known
         self._calls = 0
+        self._hold(len(known))
+
+    def _hold(self, count: int) -> None:
+        """Have so many nodes: the parts of all arrays that are in use."""
+        self._count = count
+        self._used = self._centres[:count], self._difference[:count], self._squared[:count], self._gaussian[:count]
+        features = self._features[:count]
+        self._columns, self._flat = features.T, features.reshape(-1)
 
     @property
     def nodes(self) -> int:
@@ -66,35 +74,36 @@ class GrowingGaussians(Basis):
     @property
     def centres(self) -> Array:
         """Centres of the present nodes, shape (nodes, dimension); a view."""
-        return self._centres[: self._count]
+        return self._used[0]
 
     def __call__(self, z: ArrayLike, grow: bool = False) -> Array:
         """Features at ``z``, shape (nodes features_per_node,)."""
         if self._count == 0:
             self._append(np.asarray(z, dtype=float))
-        squared = squared_distances(self.centres, z, self._difference[: self._count], self._squared[: self._count])
+        squared = squared_distances(self._used[0], z, self._used[1], self._used[2])
         if grow:
             if self._calls % self.interval == 0 and self._grow(np.asarray(z, dtype=float), squared):
-                squared = squared_distances(
-                    self.centres, z, self._difference[: self._count], self._squared[: self._count]
-                )
+                squared = squared_distances(self._used[0], z, self._used[1], self._used[2])
             self._calls += 1
-        gaussian = self._gaussian[: self._count]
-        np.multiply(squared, -1.0 / self.width**2, out=gaussian)
+        gaussian = self._used[3]
+        np.multiply(squared, self._scale, out=gaussian)
         np.exp(gaussian, out=gaussian)
         if not self.enhanced:
             return gaussian
-        features = self._features[: self._count]
-        features[:, 0] = gaussian
-        np.cos(gaussian, out=features[:, 1])
-        np.sin(gaussian, out=features[:, 2])
-        return features.reshape(-1)
+        first, cosine, sine = self._columns
+        first[...] = gaussian
+        np.cos(gaussian, out=cosine)
+        np.sin(gaussian, out=sine)
+        return self._flat
 
     def _grow(self, z: Array, squared: Array) -> bool:
         if self._count == self.max_nodes:
             return False
         if self.neighbours == 1:
-            nearest = self._centres[int(squared.argmin())]
+            index = squared.argmin()
+            if squared[index] <= self.threshold**2:
+                return False
+            nearest = self._centres[index]
         elif self._count <= self.neighbours:
             nearest = self.centres.mean(axis=0)
         else:
@@ -107,4 +116,4 @@ class GrowingGaussians(Basis):
 
     def _append(self, centre: Array) -> None:
         self._centres[self._count] = centre
-        self._count += 1
+        self._hold(self._count + 1)

@@ -191,7 +191,7 @@ class SimulatedArm(Point, ABC):
 
     @abstractmethod
     def set_mass(self, link: str, mass: float) -> None:
-        """Change the mass [kg] of one body, its moments of inertia kept."""
+        """Change the mass [kg] of one body; its moments of inertia are kept, or by PyBullet those of its shapes."""
 
     def reset(self, position: Array, velocity: Array | None = None) -> None:
         """Put the joints at given angles [rad] and rates [rad/s] (at rest by default)."""

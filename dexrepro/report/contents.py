@@ -13,6 +13,7 @@ from typing import Any
 from PIL import Image
 
 from dexrepro import chapters
+from dexrepro.checks import leaves
 from dexrepro.claims import Claim, Erratum, filled
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.experiment import Experiment
@@ -92,13 +93,15 @@ class Contents:
         for path in sorted([*place.glob("*.json"), place / "config.yaml", *place.glob("series/*")]):
             copy(path, target / path.name)
             files.append({"name": path.name, "path": f"files/{target.name}/{path.name}"})
+        used = leaves({experiment.name: read_yaml(place / "config.yaml")})
+        numbers = {**dict(used), **self.metrics}
         written = {claim.id: claim for claim in self.chapter.claims}
         claims = [
             self._claim(entry, written.get(entry["id"]), study["claims"].get(entry["id"]) if study else None)
             for entry in read_json(place / "claims.json")
         ]
         figures = [
-            self._figure(identifier, figure.caption, figure.alt, place, target)
+            self._figure(identifier, filled(figure.caption, numbers), filled(figure.alt, numbers), place, target)
             for identifier, figure in experiment.figures.items()
             if is_safe(place / "figures" / f"{file_stem(identifier)}.svg")
         ]
@@ -229,8 +232,8 @@ class Contents:
         return {
             "id": identifier,
             "chapter": self.number,
-            "caption": filled(caption, self.metrics),
-            "alt": filled(alt or caption, self.metrics),
+            "caption": caption,
+            "alt": alt or caption,
             "svg": f"files/{target.name}/{stem}.svg",
             "png": f"files/{target.name}/{stem}.png",
             "thumbnail": f"files/{target.name}/{stem}.webp",

@@ -79,7 +79,12 @@ class _Report:
         self._page("claims", here="claims", **common)
         self._page("errata", here="errata", **common)
         agreeing = [key for key, pair in crosscheck.verdicts(self.results).items() if len(set(pair)) == 1]
-        self._page("verdicts", here="verdicts", examples=verdicts.examples(claims), agreeing=agreeing, **common)
+        told: dict[str, Any] = {
+            "examples": verdicts.examples(claims),
+            "never": verdicts.never_failed(claims),
+            "agreeing": agreeing,
+        }
+        self._page("verdicts", here="verdicts", **told, **common)
         self._page("symbols", here="symbols", **common)
         self._page("equations", here="equations", equations=index, **common)
         self._write_sources(common["provenance"])

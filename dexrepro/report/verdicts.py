@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from dexrepro import claims
-from dexrepro.claims import AFTER_CORRECTION, NOT_EVALUATED, REPRODUCED, ROBUST
+from dexrepro.claims import AFTER_CORRECTION, NOT_ATTRIBUTED, NOT_EVALUATED, REPRODUCED, ROBUST
 from dexrepro.report import words
 
 Claim = Mapping[str, Any]
@@ -18,7 +18,7 @@ Claim = Mapping[str, Any]
 HOLDS = (REPRODUCED, AFTER_CORRECTION)
 VERDICTS = {**claims.VERDICTS, NOT_EVALUATED: "needs a number that this result does not have"}
 MARKS = {
-    REPRODUCED: "circle", AFTER_CORRECTION: "diamond", claims.NOT_ATTRIBUTED: "triangle",
+    REPRODUCED: "circle", AFTER_CORRECTION: "diamond", NOT_ATTRIBUTED: "triangle",
     claims.READING_DEPENDENT: "hexagon", claims.BY_CONSTRUCTION: "square", claims.NOT_REPRODUCED: "cross",
     claims.NOT_TESTABLE: "dash", NOT_EVALUATED: "dash",
 }  # fmt: skip
@@ -29,6 +29,24 @@ def is_severe(claim: Claim) -> bool:
     """Whether the run without what the claim credits makes the statement fail."""
     margin = claim.get("control_margin")
     return margin is not None and not margin > 0
+
+
+def seen_to_fail(claim: Claim) -> bool:
+    """Whether the statement fails in a run on record: its own, its control's, a printed form's, a reading's, a draw."""
+    row = claim.get("study") or {"holds": 0, "samples": 0}
+    margins = [claim.get(key) for key in ("margin", "control_margin", "printed_margin")]
+    margins += (claim.get("readings") or {}).values()
+    return row["holds"] < row["samples"] or any(margin is not None and not margin > 0 for margin in margins)
+
+
+def never_failed(evaluated: Iterable[Claim]) -> list[tuple[Claim, str]]:
+    """The book's claims whose statement has failed in no run on record, those by construction apart, and why."""
+    return [
+        (claim, claim.get("no_control") or ("its control holds as well" if claim["verdict"] == NOT_ATTRIBUTED else ""))
+        for claim in evaluated
+        if claim["source"] == "book" and claim["margin"] is not None and not claim["by_construction"]
+        and not seen_to_fail(claim)
+    ]  # fmt: skip
 
 
 def robustness(row: Mapping[str, Any] | None) -> str:

@@ -29,6 +29,9 @@ USED = {
 }
 
 
+MIDDLE = (0.005, 0.0, 0.0836)  # m, of the forearm in its frame
+
+
 def case(composed, experiment, name, **changes):
     values = {**composed[experiment][name], "perturbation": 0.0, "seed": 0, "case": name, **changes}
     return live(values)
@@ -42,7 +45,7 @@ def test_state_has_the_jacobians_of_the_description():
     arm, q = baxter("right"), posture("right") + 0.1
     state = reach.State(arm, q)
     assert state.jacobian(state.tip, 7) == pytest.approx(jacobian(arm, q)[:3], abs=1e-12)
-    middle = point_jacobian(arm, q, 4, scene.MID_FOREARM)[:3]
+    middle = point_jacobian(arm, q, 4, MIDDLE)[:3]
     place = (state.corners[0] + state.corners[1]) / 2
     assert state.jacobian(place, 5) == pytest.approx(middle, abs=2e-3)
 

@@ -1,5 +1,6 @@
 """Chapter 8 on short runs: what must hold whatever the length of the simulation."""
 
+import copy
 import importlib
 
 import numpy as np
@@ -13,8 +14,10 @@ from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.chapters.chapter8.sponge import experiment as sponge
 from dexrepro.chapters.chapter8.unknown_object import experiment as unknown_object
 from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.control.barrier_tracking import barrier_terms
 from dexrepro.control.impedance_learning import ConstantGain
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, optimal_gain
+from dexrepro.physics.loop import Diverged
 
 CASES = {name: experiment_cases(compose_chapter("8"), name) for name in ("circle_tracking", "unknown_object", "sponge")}
 
@@ -39,10 +42,47 @@ def test_the_start_transient_ends_inside_the_bounds(case):
     assert np.all(np.abs(recording["error"][-20:]) < 0.25 * np.array(config.bound))
 
 
+def test_the_forces_in_y_that_the_erratum_on_the_pose_names():
+    """E8.01: what the law holds with rate 1, the load at the start elbow-down and the largest elbow-up [N]."""
+    config = live({**CASES["circle_tracking"]["down_unit"], "perturbation": 0.0})
+    law, arm = config.barrier.keywords, config.arm
+    reach = max(barrier_terms(error, config.bound[1])[0] for error in np.linspace(1e-4, config.bound[1], 1000))
+    held = law["velocity_gain"][1] * law["position_gain"][1] * reach + law["robust_gain"][1]
+
+    def load(x, y, elbow):
+        (a, b), (c, d), (m1, m2) = arm.lengths, arm.centres, arm.masses
+        bend = elbow * np.arccos((x**2 + y**2 - a**2 - b**2) / (2 * a * b))
+        first = np.arctan2(y, x) - np.arctan2(b * np.sin(bend), a + b * np.cos(bend))
+        upper, fore = a * np.exp(1j * first), b * np.exp(1j * (first + bend))
+        torque = np.array([m1 * c * upper / a + m2 * (upper + d * fore / b), m2 * d * fore / b]).real * config.gravity
+        return np.linalg.solve(
+            np.array([[-(upper + fore).imag, (upper + fore).real], [-fore.imag, fore.real]]), torque
+        )[1]
+
+    angles = np.linspace(0, 2 * np.pi, 400)
+    along = max(load(0.2 + 0.1 * np.cos(angle), 0.2 + 0.1 * np.sin(angle), -1) for angle in angles)
+    assert (held, load(*config.start, 1), along) == pytest.approx((16.5, 28.8, 12.2), abs=0.05)
+
+
 def test_elbow_down_with_rate_one_violates_a_bound_and_the_run_says_so():
     recording, config = run("circle_tracking", "down_unit")
     assert "error bound of axis y violated" in recording.status
     assert circle_tracking.measure(recording, config)["violated_at"] == pytest.approx(0.052, abs=0.01)
+
+
+@pytest.mark.parametrize("case", ["tuned_broad", "tuned_fuzzy", "tuned_hinf"])
+def test_a_search_ends_at_what_the_loop_bears_and_not_at_the_edge_of_its_grid(case):
+    values = copy.deepcopy(CASES["circle_tracking"][case])
+    assert run("circle_tracking", case, duration=0.1)[0].status == "finished"
+    if case == "tuned_hinf":  # twice the integral share
+        values["hinfinity"]["gain"]["weights"][0] *= 4
+    else:
+        values["networks"]["rates"] = [1.45 * rate for rate in values["networks"]["rates"]]
+    try:
+        status = run("circle_tracking", case, **{**values, "duration": 0.1})[0].status
+    except Diverged as error:
+        status = str(error)
+    assert "violated" in status or "diverged" in status
 
 
 def test_matching_gives_the_fixed_network_the_adaptation_gain_of_the_broad_one():

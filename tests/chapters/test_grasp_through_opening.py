@@ -31,7 +31,7 @@ def item(settings, dx=0.0, dy=0.0, yaw=0.0):
 
 def test_opening_is_found_in_the_picture(settings):
     seen = picture(settings, [item(settings)])
-    assert joined.find_opening(seen, settings) == pytest.approx(settings.centre[:2], abs=0.004)
+    assert joined.find_opening(seen, settings) == pytest.approx(settings.centre, abs=0.004)
 
 
 def test_proposals_lie_on_what_stands_out(settings):
@@ -73,3 +73,13 @@ def test_roll_error_takes_the_nearer_side_of_the_fingers(settings):
     for roll, expected in ((0.0, 0.0), (math.pi, 0.0), (0.05, 0.05), (math.pi - 0.05, -0.05), (1.0, 0.1)):
         law.config = type(settings)({**settings, "roll": roll})
         assert law._roll_error(down, down[:, 2]) == pytest.approx(expected, abs=1e-9)
+
+
+def test_friction_decides_what_the_fingers_hold(settings):
+    block, floor = item(settings, 0.03, 0.02, yaw=0.6), joined._floor(settings)
+    grasp = joined.Grasp(block.x, block.y, 0.6, floor.floor + 0.05)
+    slippery = type(settings)({**settings, "fingers": type(settings)({**settings.fingers, "friction": 0.01})})
+    beside = replace(grasp, x=grasp.x + 0.12)
+    assert joined.fingers.held(settings, floor, [block], grasp, floor.floor + 0.02) == 0
+    assert joined.fingers.held(slippery, floor, [block], grasp, floor.floor + 0.02) is None
+    assert joined.fingers.held(settings, floor, [block], beside, floor.floor + 0.02) is None

@@ -58,6 +58,18 @@ def test_a_control_that_holds_is_said_to_hold() -> None:
     assert "identity" in verdicts.noticed(claim(no_control="an identity"))
 
 
+def test_a_statement_has_been_seen_to_fail_only_in_a_run_of_its_own() -> None:
+    assert not verdicts.seen_to_fail(claim())
+    assert not verdicts.seen_to_fail(claim(control_margin=0.1, study={"holds": 40, "samples": 40}))
+    assert all(
+        verdicts.seen_to_fail(claim(**values))
+        for values in (SEVERE, {"printed_margin": -1.0}, {"readings": {"whole run": -0.1}}, {"margin": -0.2})
+    )
+    assert verdicts.seen_to_fail(claim(study={"holds": 15, "samples": 16}))
+    never = [claim(), claim(no_control="an identity"), claim(verdict="not attributed"), claim(**SEVERE)]
+    assert [reason for _, reason in verdicts.never_failed(never)] == ["", "an identity", "its control holds as well"]
+
+
 def test_the_answer_names_what_fails() -> None:
     claims = [claim(), claim(id="C1.02", verdict="not attributed"), claim(id="C1.03", source="ours")]
     assert verdicts.answer(claims) == "1 of the book's 2 claims holds. C1.02 not attributed."

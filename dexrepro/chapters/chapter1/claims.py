@@ -13,12 +13,4 @@ CLAIMS = (
         not_testable="Fatigue and comfort are felt by people; only a load of the forearm's posture is computed here.",
         where="1.5.2.1",
     ),
-    Claim(
-        "C1.27",
-        "1.6",
-        "The quaternion rule is computationally cheap.",
-        None,
-        not_testable="It is a permutation with two changes of sign; a wall time says nothing more.",
-        where="1.3.3",
-    ),
 )

@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
+from dexrepro.chapters.chapter3.measures import headed
 from dexrepro.chapters.chapter3.scene import ARM, centreline, gripper_arm
 from dexrepro.control.remote_centre import closest_point, tool_axis
-from dexrepro.experiment import Config, Drawing, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Recording
 from dexrepro.report import style
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.rotations import tilt
@@ -16,12 +18,24 @@ from dexrepro.robots.rotations import tilt
 
 def describe(config: Config) -> str:
     """One case in a few words."""
-    parts = [f"{config.task.replace('_', ' ')} task", f"mass error {100 * config.model.mass_error:g} %"]
+    error = config.model.mass_error
+    known = f"mass error {100 * error:g} %" if isinstance(error, (int, float)) else "mass errors that differ"
+    parts = [f"{config.task.replace('_', ' ')} task", known]
     if config.straight:
         parts.append("straight to the target")
     parts.append(f"K_R {config.null_space.stiffness:g} N/m" if config.null_space.enabled else "no null-space torque")
     parts.append("no network" if config.law.get("network") is None else f"weights by {config.adaptation} e2")
     return ", ".join(parts)
+
+
+def by_reading(metrics: AllMetrics, config: Config) -> pd.DataFrame:
+    """One row a case: what it is in a few words, and all its metrics."""
+    rows = [
+        {"case": case, "reading": describe(config.cases[case]), **values}
+        for case, values in metrics.items()
+        if case in config.cases
+    ]
+    return headed(rows)
 
 
 def picture(image: Any, finding: str) -> Drawing:

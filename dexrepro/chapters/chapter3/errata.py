@@ -34,7 +34,7 @@ ERRORS = (
         "distance that Fig. 3.3 and the text describe. Of little consequence here: with the arrows of the reading "
         "E3.16b it pulls the arm as near as the corrected form does.",
         "R = P_R P_E - P_EA P_E cos(theta_R) |P_R P_E| / |P_EA P_E|, the foot point's offset; pointing to P_R.",
-        switch="fixed_opening.null_space.force=bracket",
+        switch="fixed_opening.null_space.printed=true",
         evidence=tuple(f"{FIXED}.{c}.rcm_distance_final" for c in ("bracket1", "exactpos1", "exactposfree1")),
     ),
     Erratum(
@@ -66,7 +66,7 @@ READINGS = (
         "as tool-to-base the printed axis doubles the angle. With Theta = base-to-tool and q_U in tool coordinates the "
         "printed order is right. The arctan of a quotient of vectors is read as atan2 of norm and dot product.",
         "Turn about -q_U (reading used: Theta maps tool to base coordinates).",
-        switch="fixed_opening.task=pose fixed_opening.printed_axis=true",
+        switch="fixed_opening.task=pose fixed_opening.printed=true",
         evidence=(f"{FIXED}.wrong_axis1.tracking_error_max", f"{FIXED}.pose1.tracking_error_max"),
     ),
     Erratum(
@@ -95,7 +95,7 @@ READINGS = (
         "With an arrow from its first to its second letter R, with the bracket as printed or corrected, points away "
         "from P_R and drives the arm off; the opposite convention makes it right.",
         "F_R = K_R (P_R - foot point).",
-        switch="fixed_opening.null_space.force=printed",
+        switch="fixed_opening.null_space.arrows=outward",
         evidence=tuple(f"{FIXED}.{c}.rcm_distance_final" for c in ("printed_force1", "bracket1", "exactposfree1")),
     ),
     Erratum(

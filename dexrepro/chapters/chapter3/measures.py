@@ -26,7 +26,7 @@ def reach_metrics(recording: Recording, config: Config) -> Metrics:
     arm, positions = gripper_arm(config.gripper), recording[f"{ARM}.position"]
     inside = recording.between(config.phases[0])
     distance, contact = recording["rcm_distance"], recording["contact"]
-    finished = recording.status == "finished" and bool(inside.any())
+    finished = recording.status.startswith("finished") and bool(inside.any())
     return {
         "final_position_error": last(recording["error"]) if finished else None,
         "tracking_error_max": float(recording["tracking"].max()),

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from dexrepro.arrays import Array
-from dexrepro.chapters.chapter3.scene import ARM, ELBOW, WRIST, gripper_arm
+from dexrepro.chapters.chapter3.scene import ARM, ELBOW, WRIST, gripper_arm, start_posture
 from dexrepro.control.contract import Command, Measured, report
 from dexrepro.control.motion import Motion, quintic
 from dexrepro.control.null_space import consistent_damping, consistent_inverse, damped_inverse
@@ -20,7 +21,8 @@ from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.world import World
 from dexrepro.robots.arm import Arm
-from dexrepro.robots.kinematics import joint_frames
+from dexrepro.robots.inverse_kinematics import solve
+from dexrepro.robots.kinematics import forward, joint_frames
 from dexrepro.robots.rotations import cross, rotation_matrix, tilt
 
 BEYOND = 1.6  # a retreat's length over that of the insertion
@@ -42,7 +44,7 @@ class Reference:
         self._lever = config.lever
         self._straight = config.straight
         self._axis = axis
-        self._turn = -tilt(tool_axis(centre, centre, self.target, self._lever), axis)
+        self.turn = -tilt(tool_axis(centre, centre, self.target, self._lever), axis)
 
     def __call__(self, time: float, centre: Array) -> tuple[Array, Array, Array, Array]:
         """Position [m], velocity [m/s], tool axis and its angular velocity [rad/s], (3,) each."""
@@ -53,8 +55,8 @@ class Reference:
         if time < self.approach:
             share, rate = quintic(time, self.approach)
             way = self.centre - self.start
-            axis = rotation_matrix(share * self._turn) @ self._axis
-            return self.start + share * way, rate * way, axis, rate * self._turn
+            axis = rotation_matrix(share * self.turn) @ self._axis
+            return self.start + share * way, rate * way, axis, rate * self.turn
         share, rate = quintic(time - self.approach, self.insertion)
         if self._retreat and time > self._leave:
             back, rate = quintic(time - self._leave, self._retreat)
@@ -90,21 +92,22 @@ class State:
 class Reach:
     """From what the arm measures of itself and the camera's two points to joint torques; nothing else is known.
 
-    The nominal model, wrong by ``config.model.mass_error``, serves gravity compensation, projector and observer; a
-    factor that all masses and inertias share leaves the projector as it is.
+    The nominal model, wrong by ``config.model.mass_error``, serves gravity compensation, projector and observer; an
+    error that all masses and inertias share leaves the projector as it is, one that differs by link does not.
     centre: P_R(t) as the camera sees it. applied: the torque that the motors report [N m].
     distance, observed, reference, force: of the last call, for recording.
     """
 
     def __init__(self, config: Config, centre: Callable[[float], Array], applied: Callable[[], Any]) -> None:
         self.arm = gripper_arm(config.gripper)
-        self.model = RigidBodyModel(self.arm, mass_error=config.model.mass_error)
+        self.model = nominal_model(self.arm, config.model.mass_error)
         self.config, self.law, self.observer = config, JointDrive(config.law), config.observer
         if config.adaptation == "task":  # what of e2 moves the task drives the weights
             config.law.part = self._moving
         self._centre, self._applied = centre, applied
         self._reference: Reference | None = None
         self._joints: Array | None = None
+        self._postures: tuple[Array, ...] = ()
         self.tracking = 0.0
         self.observed = np.zeros(7)
 
@@ -120,7 +123,9 @@ class Reach:
         error, jacobian, rate = self._task(state, wanted)
         self._jacobian = jacobian
         self._inverse, projector = consistent_inverse(mass, jacobian)
-        if config.reference == "joint":
+        if config.reference == "postures":
+            joints, joint_rate = self._interpolated(sense.time, centre)
+        elif config.reference == "joint":
             joints, joint_rate = self._solved(q, wanted)
         else:
             back = self._inverse if config.task == "position" else damped_inverse(jacobian, config.damping)
@@ -150,7 +155,7 @@ class Reach:
         turn = tilt(axis, state.rotation[:, 2])
         if self.config.task == "pose":
             # Roll is that of the actual orientation, Eq. (3.21): its error is zero by definition.
-            sign = -1.0 if self.config.printed_axis else 1.0
+            sign = -1.0 if self.config.printed else 1.0
             rows = np.eye(3)
         else:
             sign, rows = 1.0, state.rotation.T[:2]
@@ -181,16 +186,31 @@ class Reach:
         self._joints = self._joints + self.config.step * desired
         return self._joints, desired
 
+    def _interpolated(self, time: float, centre: Array) -> tuple[Array, Array]:
+        """q_d and dq_d between postures at the start, in the opening and at the target, which know of no centre."""
+        assert self._reference is not None
+        if not self._postures:
+            target, start = self._reference.target, np.array(start_posture(self.config.gripper, self.config.lift))
+            turn = self._reference.turn
+            inside = solve(self.arm, centre, rotation_matrix(turn) @ forward(self.arm, start)[1], start, "axis")
+            end = solve(self.arm, target, forward(self.arm, inside)[1], inside, "axis")
+            self._postures = start, inside, end
+        approach, insertion = self._reference.approach, self._reference.insertion
+        part = int(time >= approach)
+        share, rate = quintic(time - part * approach, insertion if part else approach)
+        way = self._postures[part + 1] - self._postures[part]
+        return self._postures[part] + share * way, rate * way
+
     def _subtask(self, state: State, centre: Array) -> Array:
         """tau_sub (n,) [N m], Eq. (3.30): pull the nearest point of the arm to the centre, take out what pushes it."""
         null = self.config.null_space
         segment, point = closest_point(centre, state.corners)
         joints = CARRIERS[segment]
-        if null.force == "corrected":
-            force = centre_force(centre, point, null.stiffness)
+        if null.printed:
+            pull = -printed_centre_force(centre, state.tip, state.corners[1], null.stiffness)
         else:
-            force = printed_centre_force(centre, state.tip, state.corners[1], null.stiffness)
-            force = force if null.force == "printed" else -force  # "bracket": arrows as in the corrected form
+            pull = centre_force(centre, point, null.stiffness)
+        force = pull if null.arrows == "inward" else -pull
         jacobian = state.jacobian(point, joints)
         if null.jacobian == "last3":
             jacobian[:, :4] = 0.0
@@ -205,7 +225,10 @@ def run(
     touching: Callable[[], Any],
     events: Sequence[tuple[float, Callable[[], Any]]] = (),
 ) -> Recording:
-    """Run a scene; adds ``tracking`` [m], ``observed`` [N m], ``contact`` and ``nodes`` to the World's channels."""
+    """Run a scene; adds ``tracking`` [m], ``observed`` [N m], ``contact`` and ``nodes`` to the World's channels.
+
+    The status says which joint was at its limit, and since when.
+    """
     plant = world.arm(ARM)
     reach = Reach(config, centre, lambda: plant.torque)
     probes = {
@@ -215,6 +238,21 @@ def run(
         "contact": touching,
     }
     try:
-        return world.run(sum(config.phases), {ARM: reach}, probes=probes, events=events, on_divergence="stop")
+        result = world.run(sum(config.phases), {ARM: reach}, probes=probes, events=events, on_divergence="stop")
     finally:
         reach.model.close()
+    positions = result[f"{ARM}.position"]
+    over = (positions <= reach.arm.lower) | (positions >= reach.arm.upper)
+    if over.any():
+        sample, joint = np.argwhere(over)[0]
+        result.status += f", {reach.arm.joints[joint].name} at its limit at {result.time[sample]:.2f} s"
+    return result
+
+
+def nominal_model(arm: Arm, error: float | Sequence[float]) -> RigidBodyModel:
+    """The model that a law has of an arm: masses and inertias off by a share, one for all links or one for each."""
+    if isinstance(error, (int, float)):
+        return RigidBodyModel(arm, mass_error=error)
+    links = tuple(link.scaled(1.0 + share) for link, share in zip(arm.links, error, strict=True))
+    fixed = tuple((pose, link.scaled(1.0 + error[-1])) for pose, link in arm.fixed)
+    return RigidBodyModel(replace(arm, links=links, fixed=fixed))

@@ -22,7 +22,6 @@ ARM = "right"
 # Joints whose origins are corners of the arm's centreline near the opening: elbow e1 and wrist w1.
 ELBOW, WRIST = 3, 5
 FOREARM = "upper_forearm"
-MID_FOREARM = (0.005, 0.0, 0.0836)  # m, frame of that link: half-way from e1 to w1
 LID: tuple[float, float, float, float] = (0.75, 0.72, 0.62, 1.0)
 WALL: tuple[float, float, float, float] = (0.80, 0.82, 0.85, 0.35)
 CUBE: tuple[float, float, float, float] = (0.0, 0.62, 0.45, 1.0)

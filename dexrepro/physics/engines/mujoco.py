@@ -1,10 +1,12 @@
 """MuJoCo: one model a scene, compiled anew whenever something is added.
 
 Integrator: semi-implicit Euler without implicit damping, as PyBullet's. Solver: Newton, elliptic cones, impratio 10 and
-a pass against slip. A rigid contact, a joint limit and a joint give way with a time constant of five steps (PyBullet
-takes a fifth of an overlap back a step) and an impedance of 0.99 to 0.999. Coefficients of friction of two bodies are
-multiplied. A contact with ``contactStiffness`` k [N/m] and ``contactDamping`` c [N s/m] is the softest that MuJoCo
-makes of them: at rest it gives k times the overlap. Restitution is not modelled. Pictures are traced by rays.
+a pass against slip. Contacts are as soft as MuJoCo makes them by itself (time constant 0.02 s, impedance 0.9 to 0.95):
+much stiffer ones part and meet again within a step when squeezed. Joint limits, ball joints and grips give way with a
+time constant of five steps, in which PyBullet, too, takes back most of an error, and an impedance of 0.99 to 0.999.
+Coefficients of friction of two bodies are multiplied. A contact with ``contactStiffness`` k [N/m] and
+``contactDamping`` c [N s/m] gives k times the overlap at rest, in each of its points. Restitution is not modelled.
+Pictures are traced by rays.
 """
 
 from __future__ import annotations
@@ -359,10 +361,9 @@ class MujocoScene:
                 one.contact.get(key, 0.0) * other.friction + other.contact.get(key, 0.0) * one.friction
                 for key in ("spinningFriction", "rollingFriction")
             )
-            self.spec.add_pair(
+            self.spec.add_pair(  # its softness is the default
                 name=f"{other.name}:{one.name}", geomname1=other.name, geomname2=one.name,
-                condim=6 if roll else 4 if spin else 3, friction=(slide, slide, spin, roll, roll), solref=self._stiff,
-                solimp=IMPEDANCE,
+                condim=6 if roll else 4 if spin else 3, friction=(slide, slide, spin, roll, roll),
             )  # fmt: skip
 
     def _soften(self) -> None:
@@ -376,10 +377,9 @@ class MujocoScene:
             stiffness = 1.0 / sum(1.0 / side["contactStiffness"] for side in soft)
             damping = max(side.get("contactDamping", 0.0) for side in soft)
             bodies = [model.geom(side.name).bodyid[0] for side in (one, other)]
-            softness = (1.0 - SOFT) / SOFT * sum(model.body_invweight0[body][0] for body in bodies)
+            scale = (1.0 - SOFT) * sum(model.body_invweight0[body][0] for body in bodies)
             model.pair_solimp[index] = (SOFT, SOFT, *IMPEDANCE[2:])
-            model.pair_solref[index] = -stiffness * softness * SOFT**2, -damping * softness * SOFT
-            model.pair_solreffriction[index] = self._stiff
+            model.pair_solref[index] = -stiffness * scale, -damping * scale
 
     def hinge(self, arm: SimulatedArm, body: RigidBody, lever: Vector) -> None:
         assert isinstance(arm, MujocoArm)

@@ -57,13 +57,13 @@ CLAIMS = (
     Claim(
         "C1.36",
         "1.15c",
-        "The adaptive scale makes teleoperation flexible: the hand moves less than with a scale that is as precise.",
-        less("dartboard.smooth.proposed_excursion", "dartboard.scale3.general_excursion"),
-        control=less("dartboard.scale2.general_excursion", "dartboard.scale3.general_excursion"),
+        "Compared with the general mapping the adaptive scale makes teleoperation flexible: the hand moves less.",
+        less("dartboard.book.proposed_excursion", "dartboard.book.general_excursion"),
+        control=less("dartboard.scale2.general_excursion", "dartboard.book.general_excursion"),
         credits="the adaptive scale (1.45)",
         readings={
-            "than with the general mapping": less(
-                "dartboard.book.proposed_excursion", "dartboard.book.general_excursion"
+            "less than with a constant scale that is as precise": less(
+                "dartboard.smooth.proposed_excursion", "dartboard.scale3.general_excursion"
             )
         },
         searched="constant scales of 1 to 6, with and without a low-pass of the hand's speed",

@@ -102,6 +102,8 @@ def _draw_errors(recordings: Recordings, metrics: Any) -> Drawing:
     return figure
 
 
+LAWS = ("proposed", "integral", "force", "passive", "proposed_tuned", "force_tuned", "passive_tuned", "printed",
+        "printed_inverse")  # fmt: skip
 COLUMNS = {
     "rmse": "RMSE [N]",
     "rmse_late": f"RMSE after {LATE:g} s [N]",
@@ -111,9 +113,8 @@ COLUMNS = {
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    laws = dict.fromkeys(case.partition("_")[2] for case in metrics if case[:2] in CASES)
     rows = []
-    for law in laws:
+    for law in (law for law in LAWS if any(f"{case}_{law}" in metrics for case in CASES)):
         row: dict[str, Any] = {"law": law.replace("_", " ")}
         for case in CASES:
             values = metrics.get(f"{case}_{law}", {})

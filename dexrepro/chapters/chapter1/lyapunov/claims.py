@@ -31,15 +31,15 @@ CLAIMS = (
         "C1.34",
         "1.10",
         "Any positive estimator gain L is stable.",
-        less("lyapunov.growth_long.growth_0p12", 1.0),
-        control=less("lyapunov.growth_long.growth_0", 1.0),
+        every(*(less(f"lyapunov.growth_long.growth_{gain}", 1.0) for gain in ("0p12", "0p15", "0p18", "0p2", "0p3"))),
+        control=less("lyapunov.growth_long.growth_m0p05", 1.0),
         printed=less("lyapunov.growth_printed.growth_0p12", 1.0),
-        readings={"within the first 100 s": less("lyapunov.growth.growth_0p12", 1.0)},
-        searched="runs of 100 to 600 s, contact that cannot pull, half the step",
         where="1.4",
-        note="Largest force error at the end against that after a third of the run, for L = 0.12: "
-        "{lyapunov.growth.growth_0p12:.2f} over 100 s, {lyapunov.growth_long.growth_0p12:.2g} over 600 s. Routh's "
-        "condition for the law as built about z = 0 is N (1 - k beta) < L (L + k alpha), here L > "
-        "{lyapunov.growth.bound:.3f}: below it the error grows for a hundred seconds before it decays.",
+        note="Largest force error at the end against that after a third of the run, for the smallest of five gains: "
+        "{lyapunov.growth.growth_0p12:.2f} over a short run, in which it only grows, "
+        "{lyapunov.growth_long.growth_0p12:.2g} over one six times as long (E1.14). Routh's condition for the law as "
+        "built about z = 0 is N (1 - k beta) < L (L + k alpha), here L > {lyapunov.growth.bound:.3f}: below it the "
+        "error grows before it decays. The control has a negative L; with none at all the ratio is "
+        "{lyapunov.growth_long.growth_0:.2g}.",
     ),
 )

@@ -2,7 +2,8 @@
 
 Perfect tracking on the holding line, first case of Fig. 1.10. The ideal law is given the contact position z_d that
 Eq. (1.31) replaces by z_A; its V must fall at every step. The law that can be built does not have that property, and it
-needs a large enough estimator gain: N (1 - k beta) < L (L + k alpha) with N = Z.Z (Routh's condition).
+needs a large enough estimator gain for an error that never grows: N (1 - k beta) < L (L + k alpha) with N = Z.Z
+(Routh's condition).
 """
 
 from __future__ import annotations
@@ -70,7 +71,8 @@ def _growth(config: Config) -> Recording:
     partner = np.minimum(config.ramp_end, config.ramp_speed * dt * np.arange(n))
     stiffness = np.full(n, config.stiffness)
     law = _law(config, dt, estimator_gain=gains, printed=config.printed)
-    force = press(law, partner, stiffness, dt=dt, unilateral=False, batch=len(gains))["force"]
+    with np.errstate(all="ignore"):  # a negative gain runs away
+        force = press(law, partner, stiffness, dt=dt, unilateral=False, batch=len(gains))["force"]
     error = np.abs(force - config.desired_force)
     blocks = error.reshape(10, n // 10, -1).max(axis=1)
     frame = pd.DataFrame(blocks, columns=[f"{gain:g}" for gain in gains])
@@ -83,7 +85,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         frame = recording.frames["growth"]
         # From the fourth tenth of the run, when the partner has come to rest, to the last.
         result: Metrics = {
-            f"growth_{column.replace('.', 'p')}": float(frame[column].iloc[9] / frame[column].iloc[3])
+            f"growth_{column.replace('.', 'p').replace('-', 'm')}": float(frame[column].iloc[9] / frame[column].iloc[3])
             for column in frame.columns[1:]
         }
         return result | {"bound": bound(config)}

@@ -46,12 +46,13 @@ CLAIMS = (
         "C1.20",
         "1.16e",
         "When DFR touches the object AFR assists in holding at the right time.",
-        _in_time("adjustable"),
-        control=_in_time("constant"),
-        readings={"not before DFR touches": less(f"{READY}.adjustable.own_before_partner", 0.0)},
+        less(f"{READY}.adjustable.own_before_partner", 0.0),
+        control=less(f"{READY}.constant.own_before_partner", 0.0),
+        readings={"at the same time, within 1.5 s, as in C1.19": _in_time("adjustable")},
+        searched="the tolerance in time, varpi and the compliance of the field",
         where="1.5.2.1",
-        note="Right: the two reach the surface within 1.5 s of each other; AFR comes "
-        "{ready_to_hold.adjustable.own_before_partner:.1f} s first. For any varpi below 2 the field lets AFR touch "
+        note="Right: when DFR touches, so not before. AFR comes "
+        "{ready_to_hold.adjustable.own_before_partner:.1f} s before it. For any varpi below 2 the field lets AFR touch "
         "first: at a distance of r / (varpi - 1) > r. With varpi = 2, or with a third of the compliance, it touches "
         "after DFR (T1.E).",
     ),

@@ -14,6 +14,16 @@ CLAIMS = (
         where="Lemma 1.1",
     ),
     Claim(
+        "C1.27",
+        "1.6",
+        "The quaternion rule is computationally efficient: it neither multiplies nor adds.",
+        every(less("relative_pose.default.multiplications", 0.5), less("relative_pose.default.additions", 0.5)),
+        by_construction="Eq. (1.14) is a permutation with two changes of sign.",
+        where="1.3.3",
+        note="The product with the quaternion of a half-turn, which it stands for, takes 16 multiplications and 12 "
+        "additions in general.",
+    ),
+    Claim(
         "C1.11",
         "1.5",
         "Re-fixing makes no jump, and afterwards the tool turns as the leader does.",

@@ -116,7 +116,10 @@ def measure(recording: Recording, config: Config) -> Metrics:
         result[f"{form}_pull_back"] = float(rows["tool"].max() - rows["tool"].iloc[-1])
     speeds = np.linspace(0, 0.5, 501)
     scale = SpeedScaling()(speeds)
+    rule = facing(np.eye(4))  # as a matrix, which says what the rule computes
     result |= {
+        "multiplications": int(np.sum((rule != 0) & (np.abs(rule) != 1))),
+        "additions": int(np.sum(np.maximum((rule != 0).sum(axis=0) - 1, 0))),
         "scale_least": float(scale[speeds <= 0.05].max()),
         "scale_most": float(scale[speeds >= 0.3].min()),
         "scale_steps_down": int(np.sum(np.diff(scale) < 0)),

@@ -21,7 +21,7 @@ CLAIMS = (
         where="1.5.1",
         note="Counted on the holding line without arms. Without its weights the law has the smallest error as often: "
         "{sensitivity.tracking.best_proportional_c1:.0%} of the time in case 1, with them "
-        "{sensitivity.tracking.best_c1:.0%}. With the printed definition of e_f contact is lost at once.",
+        "{sensitivity.tracking.best_c1:.0%}. With the printed definition of e_f (E1.10) contact is lost at once.",
     ),
     Claim(
         "C1.26",

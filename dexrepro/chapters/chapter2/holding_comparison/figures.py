@@ -28,6 +28,7 @@ NAMES = {
     "force": "F",
     "force_integral": "F (integral)",
     "passive_impedance": "PIm",
+    "told_passive": "PIm, told the start",
     "no_impedance": "NoIm",
     "impedance": "Im",
 }

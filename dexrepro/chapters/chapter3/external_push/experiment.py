@@ -10,7 +10,7 @@ import pandas as pd
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.measures import add_distances, reach_metrics
-from dexrepro.chapters.chapter3.scene import ARM, ELBOW, FOREARM, MID_FOREARM, Touching, build, cutaway, gripper_arm
+from dexrepro.chapters.chapter3.scene import ARM, ELBOW, FOREARM, Touching, build, cutaway, gripper_arm
 from dexrepro.control.momentum_observer import MomentumObserver
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms
@@ -25,7 +25,7 @@ SWEPT = {"lag": "lag", "noisy": "noisy_error", "clean": "clean_error"}
 
 def scene(config: Config) -> World:
     world = build(config)
-    world.add(Push(ARM, trapezoid(config.push), FOREARM, MID_FOREARM))
+    world.add(Push(ARM, trapezoid(config.push), FOREARM, tuple(config.push.place)))
     return world
 
 
@@ -35,7 +35,7 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
     elbow = joint_frames(gripper_arm(config.gripper), recording[f"{ARM}.position"])[:, ELBOW]
     force = np.stack([recording[f"push.{axis}"] for axis in "xyz"], axis=1)
     size = np.linalg.norm(config.push.force)
-    forearm = elbow[:, :3, 3] + elbow[:, :3, :3] @ MID_FOREARM - 0.17 * force / size
+    forearm = elbow[:, :3, 3] + elbow[:, :3, :3] @ np.array(config.push.place) - 0.17 * force / size
     world.add_box("push", (0.025, 0.2, 0.025), (0, 0, 0), colour=(0.0, 0.45, 0.7, 1.0), collides=False)
     shown.series["push.pose"] = np.where(np.linalg.norm(force, axis=1, keepdims=True) > 0, forearm, -9.0)
     return shown
@@ -57,7 +57,8 @@ def simulate(config: Config, rng: Rng) -> Recording:
     with scene(config) as world:
         recording = reach.run(world, config, lambda _: centre, Touching(world))
     add_distances(recording, config, centre)
-    jacobian = point_jacobian(gripper_arm(config.gripper), recording[f"{ARM}.position"], 4, MID_FOREARM)[:, :3]
+    place = tuple(config.push.place)
+    jacobian = point_jacobian(gripper_arm(config.gripper), recording[f"{ARM}.position"], 4, place)[:, :3]
     force = np.stack([recording[f"push.{axis}"] for axis in "xyz"], axis=1)
     recording.series["external"] = np.einsum("ki,kij->kj", force, jacobian)
     if config.sweep.run:

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter3 import drawings
-from dexrepro.chapters.chapter3.measures import COLUMNS, headed
+from dexrepro.chapters.chapter3.measures import COLUMNS
 from dexrepro.chapters.chapter3.scene import FILMED
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 from dexrepro.report import style
@@ -107,12 +107,7 @@ def _draw_reach(n: int, recordings: Recordings, metrics: Any, config: Config) ->
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    rows = [
-        {"case": case, "reading": drawings.describe(config.cases[case]), **values}
-        for case, values in metrics.items()
-        if case in config.cases
-    ]
-    return {"T3.A": headed(rows), "T3.S": _sensitivity(metrics)}
+    return {"T3.A": drawings.by_reading(metrics, config), "T3.S": _sensitivity(metrics)}
 
 
 # Variant, what differs, claim, metric, bound that the claim puts on it [m] and the case it departs from.

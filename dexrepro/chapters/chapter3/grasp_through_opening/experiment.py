@@ -14,7 +14,7 @@ from scipy.ndimage import find_objects
 from scipy.ndimage import label as regions_of
 
 from dexrepro.arrays import Mask, Rng
-from dexrepro.chapters.chapter3 import reach
+from dexrepro.chapters.chapter3 import fingers, reach
 from dexrepro.chapters.chapter3.scene import ARM, Touching, add_box, cutaway, gripper_arm, start_posture
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import binomial_interval
@@ -22,7 +22,7 @@ from dexrepro.physics.rendering import Camera, Overhead
 from dexrepro.physics.world import World
 from dexrepro.vision.classifier import GraspClassifier
 from dexrepro.vision.patches import Grasp, Picture, cut, observe
-from dexrepro.vision.tabletop import BAD, Box, Item, label, place_items, scatter, taken, training_set
+from dexrepro.vision.tabletop import BAD, Box, Item, label, place_items, scatter, training_set
 
 VIEW = Camera(target=(0.5, -0.25, 0.2), distance=1.3, yaw=40.0, pitch=-25.0)
 FINGERS = 0.04  # m, how far the fingers, which are not bodies of the simulation, reach beyond the tool's tip
@@ -67,11 +67,11 @@ def simulate(config: Config, rng: Rng) -> Recording:
             scores = classifier.probabilities(cut(picture, grasps, config.patch_size))
             grasp = grasps[int(scores[:, 0].argmax())] if grasps else None
         row = {"scene": number, "candidates": len(grasps), "lifted": 0, "outcome": "nothing seen"}
-        row["opening_error"] = math.dist(opening, config.centre[:2])
+        row["opening_error"] = math.dist(opening, config.centre)
         if grasp is not None:
             row["truly"] = ("safe", "unsafe", "bad")[label(grasp, items, _floor(config), config.safety_margin)]
             row["possible"] = sum(label(g, items, _floor(config), config.safety_margin) != BAD for g in grasps)
-            row.update(_attempt(config, items, grasp, (*opening, config.centre[2]), recording))
+            row.update(_attempt(config, items, grasp, opening, recording))
         rows.append(row)
     recording.frames["scenes"] = pd.DataFrame(rows)
     return recording
@@ -111,15 +111,15 @@ def _picture(config: Config, items: list[Item], rng: np.random.Generator) -> Pic
         return observe(*world.look_down(camera), camera, rng)
 
 
-def find_opening(picture: Picture, config: Config) -> tuple[float, float]:
-    """Centre (x, y) [m] of the hole: middle of the deep pixels framed by the lid, whose height is the commonest."""
+def find_opening(picture: Picture, config: Config) -> tuple[float, float, float]:
+    """Centre (3,) [m] of the hole: middle of the deep pixels framed by the lid, half a plate below its upper face."""
     camera, heights = picture.lens, picture.heights
     highest = heights > heights.max() - 0.02
     lid = float(np.median(heights[highest]))
     top, bottom, left, right = _enclosed(~highest)
     x0, y0 = camera.place(left - 0.5, bottom + 0.5, lid)  # type: ignore[attr-defined]
     x1, y1 = camera.place(right + 0.5, top - 0.5, lid)  # type: ignore[attr-defined]
-    return (x0 + x1) / 2, (y0 + y1) / 2
+    return (x0 + x1) / 2, (y0 + y1) / 2, lid - config.box.thickness / 2
 
 
 def _enclosed(deep: Mask) -> tuple[int, int, int, int]:
@@ -151,7 +151,7 @@ def proposals(picture: Picture, opening: Sequence[float], config: Config, rng: n
 def _attempt(
     config: Config, items: list[Item], grasp: Grasp, opening: Sequence[float], recording: Recording
 ) -> dict[str, Any]:
-    """Reach, close, lift; the fingers hold what truly lies between them where the arm truly is."""
+    """Reach, close, lift; held is what rises with two fingers that close where the arm truly is (``fingers``)."""
     depth = grasp.z + FINGERS / 2
     values = Config.of({**config, "target": [grasp.x, grasp.y, depth], "roll": grasp.angle, "centre": list(opening)})
     values["law"], values["observer"] = copy.deepcopy(config.law), copy.deepcopy(config.observer)
@@ -165,8 +165,8 @@ def _attempt(
             angle = math.atan2(state.rotation[1, 0], state.rotation[0, 0])
             now = [_moved(item, world.bodies[name]) for item, name in zip(items, names)]
             actual = Grasp(state.tip[0], state.tip[1], angle, state.tip[2])
-            found = taken(actual, now) if label(actual, now, _floor(config), 0.0) != BAD else None
-            if found is not None and state.tip[2] - FINGERS < _floor(config).floor + items[found].size[2] - 0.01:
+            found = fingers.held(config, _floor(config), now, actual, state.tip[2] - FINGERS)
+            if found is not None:
                 held.append(found)
                 world.grip(ARM, names[found])
 

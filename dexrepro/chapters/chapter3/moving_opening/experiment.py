@@ -44,7 +44,8 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
 def simulate(config: Config, rng: Rng) -> Recording:
     centre = path(config)
     with scene(config) as world:
-        recording = reach.run(world, config, centre, Touching(world))
+        seen = lambda time: centre(max(time - config.motion.delay, 0.0))  # noqa: E731
+        recording = reach.run(world, config, seen, Touching(world))
         if config.pictures:
             for name, time in (("begin", 0.0), ("quarter", 1.25), ("end", config.motion.period)):
                 now = config.motion.start + time

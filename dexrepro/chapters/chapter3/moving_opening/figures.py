@@ -7,7 +7,6 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.chapters.chapter3 import drawings
-from dexrepro.chapters.chapter3.measures import headed
 from dexrepro.chapters.chapter3.scene import FILMED
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Metrics, Recording, Recordings
 from dexrepro.report import style
@@ -97,9 +96,4 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    rows = [
-        {"case": case, "reading": drawings.describe(config.cases[case]), **values}
-        for case, values in metrics.items()
-        if case in config.cases
-    ]
-    return {"T3.D": headed(rows)}
+    return {"T3.D": drawings.by_reading(metrics, config)}

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter5 import pen
-from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings, changed
 from dexrepro.report import style
 from dexrepro.report.tables import by_case
 from dexrepro.robots.pen_arm import pen_arm_tip
@@ -46,9 +46,9 @@ FILM = Film(
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
-    written = [case for case in recordings if case.startswith("letter_")]
+    written = [case for case in recordings if changed(config.cases[case], config) <= {"hand.letter"}]
     if written:
-        figures["5.5b"] = _draw_letters(written, recordings, metrics)
+        figures["5.5b"] = _draw_letters(written, recordings, metrics, config)
     if "letter_a" in recordings:
         figures["5.4"] = _draw_picture(recordings["letter_a"])
     if set(SHOWN) <= set(recordings):
@@ -64,7 +64,7 @@ SHOWN = {
 }
 
 
-def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics) -> Drawing:
+def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     figure, axes = style.subplots(1, len(cases), height=2.0, sharex=True, sharey=True, squeeze=False)
     for panel, case in zip(axes[0], cases):
         drawn = pen.from_paper(recordings[case]["arm.tip"])
@@ -72,7 +72,7 @@ def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics)
         panel.plot(*drawn.T, **style.LINES["book"])
         panel.plot(*told.T, **style.LINES["reference"])
         panel.set(aspect="equal", xlabel="x [cm]")
-        panel.set_title(f"{case[-1]}: {1e3 * metrics[case]['tip_rms']:.0f} µm")  # type: ignore[operator]
+        panel.set_title(f"{config.cases[case].hand.letter}: {1e3 * metrics[case]['tip_rms']:.0f} µm")  # type: ignore[operator]
     axes[0, 0].set_ylabel("y [cm]")
     worst = max(metrics[case]["tip_rms"] for case in cases)  # type: ignore[type-var]
     style.title(

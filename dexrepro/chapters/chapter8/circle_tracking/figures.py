@@ -247,7 +247,7 @@ VARIANTS = (
     Variant("C8.07", "equal adaptation gain, x", "early_x", ("friction_broad", "friction_fuzzy_matched"), _FRICTION),
     Variant("C8.08", "H-infinity with integral action", "early_x", _INTEGRAL, _STATIC),
     Variant("C8.08", "rate 1", "early_y", ("friction_broad_unit", "friction_hinf"), _STATIC),
-    Variant("C8.08", "every method the best of 16 settings", "early_x", ("tuned_broad", "tuned_hinf"), _STATIC),
+    Variant("C8.08", "every method the best of its search", "early_x", ("tuned_broad", "tuned_hinf"), _STATIC),
 )
 
 
