@@ -6,6 +6,7 @@ it counts as not severely tested, never as tested.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -115,6 +116,19 @@ def answer(evaluated: Sequence[Claim]) -> str:
     )
     first = f"{how_many} of the book's {len(book)} claims {'holds' if len(held) == 1 else 'hold'}{after}."
     return f"{first} {missed}." if missed else first
+
+
+def to_name(evaluated: Iterable[Claim], stored: Mapping[str, str]) -> list[str]:
+    """A line for each claim that does not hold, or ends otherwise than is stored, with its margin."""
+    lines = []
+    for claim in evaluated:
+        verdict, was = claim["verdict"], stored.get(claim["id"])
+        changed = was not in (None, verdict)
+        if verdict != NOT_EVALUATED and (changed or verdict == claims.NOT_REPRODUCED):
+            margin = "" if claim["margin"] is None else f", margin {claim['margin']:+.2g}"
+            said = textwrap.shorten(claim["statement"], 90, placeholder=" ...")
+            lines.append(f"{claim['id']}  {verdict}{margin}{f' (stored: {was})' if changed else ''}: {said}")
+    return lines
 
 
 def examples(evaluated: Iterable[Claim]) -> list[Claim]:
