@@ -155,7 +155,7 @@ class _Report:
             for item in [*chapter["claims"], *chapter["errata"]]
         }
         printed, rows = equations.printed(), dict[str, dict[str, Any]]()
-        mentions = equations.index()
+        mentions = [mention for mention in equations.index() if not printed or mention.equation in printed]
         for name in sorted({*printed, *(mention.equation for mention in mentions)}, key=equations.place):
             section, latex = printed.get(name, ("", ""))
             rows[name] = {"equation": name, "section": section, "typeset": equations.typeset(latex)}
