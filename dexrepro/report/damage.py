@@ -8,7 +8,7 @@ import re
 import zlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import yaml
 
@@ -71,7 +71,7 @@ def check_series(path: Path) -> None:
         raise _damaged(path, str(error)) from error
 
 
-def _check_lines(file: IO[bytes]) -> None:
+def _check_lines(file: BinaryIO | gzip.GzipFile) -> None:
     read = 0
     while block := file.read(BLOCK):
         if (read := read + len(block)) > LARGEST:
