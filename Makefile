@@ -4,7 +4,7 @@ PYTHON ?=
 BIN := .venv/bin
 EXTRAS ?= dev,docs
 
-.PHONY: figures test check docs lint bench mutation wheel clean
+.PHONY: figures test check docs lint measure bench mutation wheel clean
 
 figures: .venv/ready
 	$(BIN)/dexrepro run
@@ -26,6 +26,10 @@ check: .venv/ready
 # The manual, results/docs/index.html: a link to nowhere or a tutorial that fails is an error.
 docs: .venv/ready
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet docs results/docs
+
+# What the two commands take, for the README: on a machine that does nothing else.   make measure PARTS=figures
+measure: .venv/ready
+	.ci/measure $(PARTS)
 
 bench: .venv/bench
 	$(BIN)/python -m pytest tests/bench -q -s -p no:xdist -o python_files='bench_*.py'
