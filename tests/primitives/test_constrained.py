@@ -264,3 +264,18 @@ def test_one_step_is_that_of_its_equation(law, explicit):
         after = (v + dt * (base + share * kn * 25 * alpha(dt))) / (1 + dt * share * kn * 25)
     np.testing.assert_allclose(path.velocity[1], after, rtol=1e-6)
     np.testing.assert_allclose(path.position[1], x + dt * after / tau, rtol=1e-6)
+
+
+def test_the_level_of_a_path_is_the_barrier_s_value_and_half_the_square_of_z2():
+    """V^c with z1 = k_z e and z2 = d_z (tau (x^c' - W / d_z) - v), along any path; undefined outside."""
+    _, reference = bumpy(1e-2, 0.1)
+    constraint = Constraint(True, 45.0)
+    path = roll("none", reference, 1e-2, 0.3, tau=1.3)
+    z1 = 150 * (reference.position - path.position)
+    z2 = 25 * (1.3 * (reference.velocity + z1 / 25) - path.velocity)
+    inside = np.linalg.norm(z1, axis=1) < 45
+    assert inside.sum() > 20
+    expected = constraint.value(z1[inside]) + 0.5 * (z2[inside] ** 2).sum(axis=1)
+    np.testing.assert_allclose(path.lyapunov[inside], expected)
+    assert np.isnan(path.lyapunov[~inside]).all()
+    np.testing.assert_allclose(path.distance, np.linalg.norm(z1, axis=1) / 150)
