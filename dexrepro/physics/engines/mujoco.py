@@ -229,10 +229,8 @@ class MujocoScene:
         """Make the model of everything that is there, in the state it had."""
         for item in self.items[: self._bound]:
             item.keep()
-        try:
-            self.model = self.spec.compile()
-        except ValueError as error:
-            raise LoadingError(f"MuJoCo cannot load it: {' '.join(str(error).split())}") from error
+        self.model = _compiled(self.spec)
+        self.drags.clear()
         self.data = mujoco.MjData(self.model)
         for item in self.items:
             item.bind()
@@ -520,7 +518,7 @@ class MujocoModel(RigidBodyModel):
     def _load(self, gravity: Sequence[float]) -> None:
         spec = _empty(gravity)
         _add_arm(spec, self.arm, "")
-        self._model = spec.compile()
+        self._model = _compiled(spec)
         self._data = mujoco.MjData(self._model)
         self._torque, self._mass = np.zeros(self.dof), np.zeros((self.dof, self.dof))
         self._rows = np.zeros((6, self.dof))
@@ -579,6 +577,13 @@ def _empty(gravity: Sequence[float]) -> mujoco.MjSpec:
     option.noslip_iterations = 10
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP)
     return spec
+
+
+def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise LoadingError(f"MuJoCo cannot load it: {' '.join(str(error).split())}") from error
 
 
 def _add_arm(spec: mujoco.MjSpec, arm: Arm, prefix: str) -> list[mujoco.MjsBody]:
