@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
@@ -28,6 +29,9 @@ from dexrepro.physics.rendering import Camera, Overhead, Solid
 from dexrepro.physics.sensor import Sensor
 from dexrepro.robots.arm import Arm, Link, Pose, Shape
 from dexrepro.robots.rotations import rotated
+
+# It would print, and write a file into the working directory.
+mujoco.set_mju_user_warning(lambda text: warnings.warn(f"MuJoCo: {text}", stacklevel=2))
 
 KINDS = {"box": mujoco.mjtGeom.mjGEOM_BOX, "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
          "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER, "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE}  # fmt: skip
@@ -576,6 +580,7 @@ def _empty(gravity: Sequence[float]) -> mujoco.MjSpec:
     option.cone, option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 10.0
     option.noslip_iterations = 10
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP)
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)  # what diverges is to be seen to diverge
     return spec
 
 
