@@ -185,6 +185,7 @@ def _parser() -> argparse.ArgumentParser:
     diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
     diff.add_argument("a", type=Path, help="folder of a result")
     diff.add_argument("b", type=Path, help="folder of another")
+    diff.add_argument("--html", type=Path, metavar="FILE", help="write a page instead, with both recordings to explore")
     diff.set_defaults(function=diff_command)
 
     completion = commands.add_parser("completion", help='for Tab: eval "$(dexrepro completion bash)"')
@@ -606,9 +607,11 @@ def study_command(options: argparse.Namespace) -> int:
                 out.print(f"{name}: {carried} cases of samples carried over{differ}", markup=False)
                 continue
             try:
-                path = study.run(
-                    number, name, samples, results, workers=workers, hours=hours, update=options.update, engine=engine
-                )
+                cases = study.cases_of(number, name, values["case"].strip("[]")) if "case" in values else ()
+                if cases and options.update:
+                    raise InputError(f"case = {values['case']} is not allowed with --update: what is shipped is whole")
+                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update,
+                                 engine=engine, only=cases)  # fmt: skip
             except study.SamplesFailed as error:
                 err.print(str(error), markup=False)
                 return FAILED
@@ -770,8 +773,12 @@ def completion_command(options: argparse.Namespace) -> int:
 
 def diff_command(options: argparse.Namespace) -> int:
     """Compare two result folders."""
-    from dexrepro.report.compare import compare
+    from dexrepro.report.compare import compare, write_page
 
+    if options.html:
+        write_page(options.a, options.b, options.html)
+        out.print(str(options.html), markup=False)
+        return OK
     for line in compare(options.a, options.b):
         out.print(line, markup=False)
     return OK
