@@ -606,9 +606,11 @@ def study_command(options: argparse.Namespace) -> int:
                 out.print(f"{name}: {carried} cases of samples carried over{differ}", markup=False)
                 continue
             try:
-                path = study.run(
-                    number, name, samples, results, workers=workers, hours=hours, update=options.update, engine=engine
-                )
+                cases = study.cases_of(number, name, values["case"].strip("[]")) if "case" in values else ()
+                if cases and options.update:
+                    raise InputError(f"case = {values['case']} is not allowed with --update: what is shipped is whole")
+                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update,
+                                 engine=engine, only=cases)  # fmt: skip
             except study.SamplesFailed as error:
                 err.print(str(error), markup=False)
                 return FAILED

@@ -100,7 +100,8 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Drawing:
     unit = metrics["summary"]["ratio_unit_x"] if "summary" in metrics else float("nan")
     style.title(
         figure,
-        f"Error of FNN over that of BFNN in x, 5 to 10 s: {unit:.3f} as printed, {ratio:.2f} with tuned rates",
+        f"Error of FNN over that of BFNN in x, {config.settled:g} to {config.early:g} s: {unit:.3f} as printed, "
+        f"{ratio:.2f} with tuned rates",
     )
     return figure
 
@@ -160,7 +161,7 @@ def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) 
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=6)
     errors = "; ".join(f"{label} {metrics[case]['early_x']:.2g}" for case, (label, _) in lines.items())
-    style.title(figure, f"RMS error in x under friction, 5 to 10 s [mm]: {errors}")
+    style.title(figure, f"RMS error in x under friction, {config.settled:g} to {config.early:g} s [mm]: {errors}")
     return figure
 
 
