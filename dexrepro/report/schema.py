@@ -6,11 +6,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from dexrepro import chapters
-from dexrepro.config import SETTINGS, compose_chapter
+from dexrepro.config import SETTINGS, compose_chapter, resolved_block
 from dexrepro.keys import KEYS
 from dexrepro.provenance import Provenance, origin_of, provenance
 
-TYPES = {bool: "boolean", int: "number", float: "number", str: "string", list: "array"}
+TYPES: dict[type, Any] = {
+    bool: "boolean",
+    int: ["number", "array"],
+    float: ["number", "array"],
+    str: "string",
+    list: "array",
+}
 
 
 def schema() -> dict[str, Any]:
@@ -23,7 +29,7 @@ def schema() -> dict[str, Any]:
     for number in chapters.numbers():
         composed, origins = compose_chapter(number), provenance(number)
         for name in chapters.names(number):
-            properties[name] = _block(composed[name], name, composed, origins)
+            properties[name] = _block(resolved_block(composed, name), name, composed, origins)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Configuration of dexrepro",
             "type": "object", "properties": properties}  # fmt: skip
 
@@ -41,11 +47,10 @@ def _block(
             found[name] = _block(value, f"{key}.{name}", composed, origins)
         elif name != "_target_":
             words = {"enum": [*origin.words]} if origin and origin.words else {}
-            kind = {} if isinstance(value, str) and "${" in value else {"type": TYPES.get(type(value))}
-            plain = {key: value for key, value in {**kind, **words}.items() if value}
+            plain = {**({"type": TYPES[type(value)]} if type(value) in TYPES else {}), **words}
             found[name] = {"anyOf": [plain, {"type": "string", "pattern": r"\$\{"}, {"type": "null"}]} if plain else {}
             if origin:
                 bounds = f" ({origin.low:g} to {origin.high:g})" if origin.low is not None else ""
                 symbol = f"{origin.symbol} " if origin.symbol else ""
                 found[name]["description"] = f"{symbol}[{origin.unit}] {origin.kind}: {origin.text}{bounds}"
-    return {"type": "object", "properties": found}
+    return {"type": ["object", "string", "null"], "properties": found}
