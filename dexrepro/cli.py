@@ -186,6 +186,7 @@ def _parser() -> argparse.ArgumentParser:
     diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
     diff.add_argument("a", type=Path, help="folder of a result")
     diff.add_argument("b", type=Path, help="folder of another")
+    diff.add_argument("--html", type=Path, metavar="FILE", help="write a page instead, with both recordings to explore")
     diff.set_defaults(function=diff_command)
 
     completion = commands.add_parser("completion", help='for Tab: eval "$(dexrepro completion bash)"')
@@ -778,8 +779,12 @@ def completion_command(options: argparse.Namespace) -> int:
 
 def diff_command(options: argparse.Namespace) -> int:
     """Compare two result folders."""
-    from dexrepro.report.compare import compare
+    from dexrepro.report.compare import compare, write_page
 
+    if options.html:
+        write_page(options.a, options.b, options.html)
+        out.print(str(options.html), markup=False)
+        return OK
     for line in compare(options.a, options.b):
         out.print(line, markup=False)
     return OK

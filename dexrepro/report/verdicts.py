@@ -12,6 +12,7 @@ from typing import Any
 
 from dexrepro import claims
 from dexrepro.claims import AFTER_CORRECTION, NOT_ATTRIBUTED, NOT_EVALUATED, REPRODUCED, ROBUST
+from dexrepro.report import words
 
 Claim = Mapping[str, Any]
 
@@ -143,3 +144,11 @@ def examples(evaluated: Iterable[Claim]) -> list[Claim]:
         if key not in found or merit(claim) > merit(found[key]):
             found[key] = claim
     return [found[verdict] for verdict in VERDICTS if verdict in found]
+
+
+def changes(old: Iterable[Claim], new: Iterable[Claim]) -> list[tuple[Any, Any]]:
+    """Pairs of a claim in two runs that differ in verdict or in two digits of the margin, changed verdicts first."""
+    before = {claim["id"]: claim for claim in old}
+    pairs = [(before[claim["id"]], claim) for claim in new if claim["id"] in before]
+    changed = [pair for pair in pairs if len({(c["verdict"], words.short_number(c["margin"])) for c in pair}) > 1]
+    return sorted(changed, key=lambda pair: pair[0]["verdict"] == pair[1]["verdict"])
