@@ -128,6 +128,21 @@ def panel(axes: Axes, letter: str, text: str = "") -> None:
     axes.set_title(f"({letter}) {text}".rstrip())
 
 
+def photo(axes: Axes, image: Any, text: str = "", **options: Any) -> None:
+    """A picture in the place of axes, with a title."""
+    axes.imshow(image)
+    axes.set_axis_off()
+    axes.set_title(text, **options)
+
+
+def picture(image: Any, finding: str, height: float = 2.5) -> Figure:
+    """A figure of one picture without its white margin, a column wide."""
+    figure, axes = subplots(width=ONE_COLUMN, height=height)
+    photo(axes, trimmed({"": image})[""])
+    title(figure, finding)
+    return figure
+
+
 def trimmed(images: Mapping[Any, Any]) -> dict[Any, Any]:
     """Pictures of one size without the white margin that all of them share."""
     dark = np.any([np.asarray(image).min(axis=2) < 250 for image in images.values()], axis=0)

@@ -38,22 +38,11 @@ def by_reading(metrics: AllMetrics, config: Config) -> pd.DataFrame:
     return headed(rows)
 
 
-def picture(image: Any, finding: str) -> Drawing:
-    """One rendered view."""
-    figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.7)
-    axes.imshow(style.trimmed({"view": image})["view"])
-    axes.set_axis_off()
-    style.title(figure, finding)
-    return figure
-
-
 def pictures(images: dict[str, Any], finding: str) -> Drawing:
     """Rendered views side by side, each with its label."""
     figure, grid = style.subplots(1, len(images), height=2.9)
     for axes, (label, image) in zip(grid, style.trimmed(images).items()):
-        axes.imshow(image)
-        axes.set_axis_off()
-        axes.set_title(label)
+        style.photo(axes, image, label)
     style.title(figure, finding)
     return figure
 
@@ -70,9 +59,7 @@ def steps(recording: Recording, config: Config) -> Drawing:
     figure, grid = style.subplots(1, 4, height=2.3)
     shown = style.trimmed(recording.images)
     for axes, (name, label) in zip(grid, labels.items()):
-        axes.imshow(shown[name])
-        axes.set_axis_off()
-        axes.set_title(label)
+        style.photo(axes, shown[name], label)
     style.title(figure, "The gripper enters through the opening and reaches the cube")
     return figure
 

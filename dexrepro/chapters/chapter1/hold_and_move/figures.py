@@ -90,8 +90,7 @@ def _draw_forces(recordings: Recordings, metrics: Any, config: Config) -> Drawin
 
 def _draw_scene(recording: Recording) -> Drawing:
     figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
-    axis.imshow(style.trimmed(recording.images)["b"])
-    axis.set_axis_off()
+    style.photo(axis, style.trimmed(recording.images)["b"])
     style.title(figure, "Two simulated Baxter arms hold a soft object")
     return figure
 
@@ -103,8 +102,7 @@ def _draw_task(recording: Recording) -> Drawing:
     words = ("start", "on the left", "tilted", "swinging", "over the right", "pressed")
     for k, (name, word) in enumerate(zip("abcdef", words)):
         axis = figure.add_subplot(grid[k // 3, k % 3])
-        axis.imshow(pictures[name])
-        axis.set_axis_off()
+        style.photo(axis, pictures[name])
         style.panel(axis, name, word)
     path, tilt = figure.add_subplot(grid[2, :]), figure.add_subplot(grid[3, :])
     for k, (label, role) in enumerate((("x", "plain"), ("y", "book"), ("z", "rival"))):

@@ -101,9 +101,7 @@ def _draw_task(recording: Recording, config: Config, off: float) -> Drawing:
     pictures = style.trimmed(recording.images)
     for k, (name, at) in enumerate(INSTANTS.items()):
         axis = figure.add_subplot(grid[0, k])
-        axis.imshow(pictures[name])
-        axis.set_axis_off()
-        axis.set_title(f"({name}) {at:g} s", fontsize=7)
+        style.photo(axis, pictures[name], f"({name}) {at:g} s", fontsize=7)
     axes = [figure.add_subplot(grid[row, :]) for row in range(1, 7)]
     time = recording.time
     for k, axis, label in zip((1, 0, 2), axes, ("Along [m]", "Across [m]", "Up [m]")):

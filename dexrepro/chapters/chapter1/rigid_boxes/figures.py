@@ -53,8 +53,7 @@ def _draw_boxes(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
         recording = recordings[size]
         for row, name in enumerate(("held", "carried", "dropped")):
             axis = figure.add_subplot(grid[row, column])
-            axis.imshow(pictures[size, name])
-            axis.set_axis_off()
+            style.photo(axis, pictures[size, name])
             if row == 0:
                 numbers = metrics[size]
                 axis.set_title(f"{size}: {numbers['successes']} of {numbers['runs']}")

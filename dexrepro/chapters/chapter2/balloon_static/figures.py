@@ -44,8 +44,7 @@ def _off(config: Config, case: str) -> str:
 
 def _draw_setup(recordings: Recordings, config: Config) -> Drawing:
     figure, (photo, front) = style.subplots(1, 2, height=2.7, width_ratios=(1.3, 1))
-    photo.imshow(next(iter(recordings.values())).images["contact"])
-    photo.axis("off")
+    style.photo(photo, next(iter(recordings.values())).images["contact"])
     style.panel(photo, "a", "simulated Baxter at the instant of contact")
     leader = next(iter(recordings.values()))["leader.tip"][0]
     front.plot(1e3 * leader[0], 1e3 * leader[2], "s", color=style.PLAIN, label="partner (right arm)")

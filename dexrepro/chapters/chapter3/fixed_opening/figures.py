@@ -68,7 +68,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
             figures[f"3.{6 + n}"] = _draw_reach(n, recordings, metrics, config)
     first = recordings.get("reach1")
     if first is not None and first.images:
-        figures["3.4"] = drawings.picture(first.images["start"], "A box entered through its lid")
+        figures["3.4"] = style.picture(first.images["start"], "A box entered through its lid", 2.7)
         figures["3.6"] = drawings.steps(first, config.cases["reach1"])
     if first is not None:
         figures["3.2"] = drawings.orientation(first, config.cases["reach1"])

@@ -42,7 +42,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if run is None:
         return figures
     if run.images:
-        figures["3.13"] = drawings.picture(run.images["begin"], "0 s: the arm stands in the opening")
+        figures["3.13"] = style.picture(run.images["begin"], "0 s: the arm stands in the opening", 2.7)
         pair = {"1.25 s: the opening is aside": run.images["quarter"], "10 s: it has come back": run.images["end"]}
         figures["3.14"] = drawings.pictures(pair, "The arm has followed the opening")
     figures["3.15"] = _draw_path(run, metrics["track"], config.cases["track"])

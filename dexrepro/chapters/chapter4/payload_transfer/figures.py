@@ -58,9 +58,9 @@ def _draw_phases(recording: Recording, config: Config) -> Drawing:
     figure, axes = style.subplots(1, 3, height=2.6)
     shown = style.trimmed(recording.images)
     for k, (panel, where) in enumerate(zip(axes, ("near B", "near E", "from A to D")), 1):
-        panel.imshow(shown[f"phase{k}"])
-        panel.set_axis_off()
-        panel.set_title(f"phase {'I' * k}, {config.cases['reuse'].task.pictured[k - 1]:.1f} s: {where}")
+        style.photo(
+            panel, shown[f"phase{k}"], f"phase {'I' * k}, {config.cases['reuse'].task.pictured[k - 1]:.1f} s: {where}"
+        )
     axes[0].annotate("orange: A, B, C; green: D, E, F", (0, -0.04), xycoords="axes fraction", size=7, va="top")
     style.title(figure, "The payload hangs from the gripper on a ball joint")
     return figure

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter5 import pen
-from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings, changed
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings, changed
 from dexrepro.report import style
 from dexrepro.report.tables import by_case
 from dexrepro.robots.pen_arm import pen_arm_tip
@@ -50,7 +50,9 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if written:
         figures["5.5b"] = _draw_letters(written, recordings, metrics, config)
     if "letter_a" in recordings:
-        figures["5.4"] = _draw_picture(recordings["letter_a"])
+        figures["5.4"] = style.picture(
+            recordings["letter_a"].images["picture"], "The simulated arm has written the letter a", 2.4
+        )
     if set(SHOWN) <= set(recordings):
         figures["5.D"] = _draw_errors(recordings, metrics, config)
     return figures
@@ -79,14 +81,6 @@ def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics,
         figure,
         f"After 1 s the arm writes every letter within {style.at_most(worst or 0.0, 2)} mm (RMS of the pen's point)",
     )
-    return figure
-
-
-def _draw_picture(recording: Recording) -> Drawing:
-    figure, axes = style.plt.subplots(figsize=(style.ONE_COLUMN, 2.4))
-    axes.imshow(style.trimmed({"a": recording.images["picture"]})["a"])
-    axes.set_axis_off()
-    style.title(figure, "The simulated arm has written the letter a")
     return figure
 
 

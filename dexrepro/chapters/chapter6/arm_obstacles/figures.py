@@ -94,8 +94,7 @@ def _draw_run(run: Recording, numbers: Metrics) -> Drawing:
     grid = figure.add_gridspec(2, len(shots), height_ratios=[1.1, 1.3])
     for i, (name, image) in enumerate(shots.items()):
         axes = figure.add_subplot(grid[0, i])
-        axes.imshow(image)
-        axes.axis("off")
+        style.photo(axes, image)
         style.panel(axes, "abcdef"[i], f"{name.partition('_')[2]} s")
     axes = figure.add_subplot(grid[1, :])
     for name, line in zip(BOXES, ("extra1", "extra2", "book")):

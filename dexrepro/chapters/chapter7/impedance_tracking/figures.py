@@ -49,8 +49,7 @@ def draw_pictures(recording: Recording) -> Drawing:
     words = {"a": "grasp", "f": "release"}
     figure, axes = style.subplots(2, 3, height=4.6)
     for (letter, instant), panel in zip(PICTURES.items(), axes.flat):
-        panel.imshow(images[letter])
-        panel.axis("off")
+        style.photo(panel, images[letter])
         style.panel(panel, letter, f"{words.get(letter, 'transport')}, {instant:g} s")
     style.title(figure, "The arm carries the cube past the stack (simulated)")
     return figure

@@ -58,15 +58,11 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 def draw_pictures(images: Mapping[str, Any]) -> Drawings:
     shown = style.trimmed({name: image for name, image in images.items() if name != "platform"})
-    platform, axes = style.subplots(width=style.ONE_COLUMN, height=2.5)
-    axes.imshow(style.trimmed({"platform": images["platform"]})["platform"])
-    axes.axis("off")
-    style.title(platform, "Arm, board and obstacle (simulated)")
+    platform = style.picture(images["platform"], "Arm, board and obstacle (simulated)")
     figure, panels = style.subplots(1, 4, height=1.7)
     words = ("start", "move away", "cross over", "reach the target")
     for letter, word, panel in zip("abcd", words, panels):
-        panel.imshow(shown[letter])
-        panel.axis("off")
+        style.photo(panel, shown[letter])
         style.panel(panel, letter, word)
     style.title(figure, "The person leads the arm over the tall obstacle (simulated)")
     return {"7.4": platform, "7.5": figure}

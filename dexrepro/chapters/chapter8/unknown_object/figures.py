@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from dexrepro.chapters.chapter8 import learning_study
+from dexrepro.chapters.chapter8 import drawings, learning_study
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
-from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING, soft_transfer
+from dexrepro.control.impedance_learning import EXPLORING, soft_transfer
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain
-from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recording, Recordings
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
 from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
@@ -82,15 +82,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 def _cost(config: Config) -> InteractionCost:
     cost = config.cost
     return InteractionCost(tracking=cost.tracking, effort=cost.effort, output=cost.output)
-
-
-def _phases(axes: Any, run: Recording, names: bool = True) -> None:
-    colours = {EXPLORING: "#EAF2F8", SOLVING: "#F6EFE0", TRANSFERRING: "#E9F5EC"}
-    for number, (phase, colour) in enumerate(colours.items(), 1):
-        inside = run.time[run["phase"] == phase]
-        if len(inside):
-            word = ("phase " if phase != SOLVING else "") + str(number) if names else ""
-            style.phase(axes, inside[0], inside[-1], word, colour)
 
 
 def _draw_transfer(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -165,7 +156,7 @@ def _draw_contact(recordings: Recordings, metrics: Any, config: Config) -> Drawi
     names = ("Position", "Error to the virtual reference", "Contact force", "Position, reference from the law itself")
     for letter, axes, name in zip("abcd", grid.flat, names):
         style.panel(axes, letter, name)
-        _phases(axes, soft)
+        drawings.phases(axes, soft)
         axes.set_xlim(start, end)
     figure.legend(*place.get_legend_handles_labels(), loc="outside lower center", ncols=6)
     soft_rate, abrupt_rate = (metrics[case]["force_rate"] for case in ("soft", "abrupt"))
@@ -188,7 +179,7 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
         row[0].axhline(best, label="optimum of the true object", **style.LINES["reference"])
         row[0].set(ylabel=f"$K_{key}$ [{unit}]", xlim=(start, end))
         row[0].set_ylim(*((-32, 5), (-0.05, 1.6))[index])
-        _phases(row[0], soft, names=index == 0)
+        drawings.phases(row[0], soft, names=index == 0)
         count = np.arange(len(steps) + 1)
         values = np.append(steps[f"gain_{key}"], steps[f"next_{key}"].iloc[-1])
         row[1].semilogy(count, np.abs(values), marker="o", markersize=4, **style.LINES["book"])
