@@ -157,6 +157,7 @@ def _parser() -> argparse.ArgumentParser:
     listing = commands.add_parser("list", help="chapters, experiments, cases, figures, claims, errata")
     listing.add_argument("--json", action="store_true", help="for programs, see docs/schemas")
     listing.add_argument("--markdown", action="store_true", help="the claims of the book counted by verdict")
+    listing.add_argument("--schema", action="store_true", help="a JSON schema of all parameters, for an editor")
     listing.set_defaults(function=list_command)
 
     add("show", "all there is about a claim, figure, equation, symbol, law, parameter or experiment", SHOW, "NAME")
@@ -290,8 +291,8 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
         skipped |= chapter_skipped
     if settings.get("engine") is None and any(REFERENCE != plan.engine in plan.versions for plan in plans):
         err.print(
-            "PyBullet is not installed here (its wheels end at Python 3.11): MuJoCo simulates the arms; how its "
-            "numbers differ from those stored is in docs/how-to/engines.md"
+            "PyBullet is not installed here (its wheels are for Python 3.11 on Linux): MuJoCo simulates the arms; how "
+            "its numbers differ from those stored is in docs/how-to/engines.md"
         )
     quiet = bool(settings.get("quiet"))
     progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
@@ -384,6 +385,11 @@ def list_command(options: argparse.Namespace) -> int:
 
     if options.markdown:
         print(scoreboard.markdown())
+        return OK
+    if options.schema:
+        from dexrepro.report.schema import schema
+
+        print(json.dumps(schema(), indent=1))
         return OK
 
     data = listing()
