@@ -157,6 +157,7 @@ def _parser() -> argparse.ArgumentParser:
     listing = commands.add_parser("list", help="chapters, experiments, cases, figures, claims, errata")
     listing.add_argument("--json", action="store_true", help="for programs, see docs/schemas")
     listing.add_argument("--markdown", action="store_true", help="the claims of the book counted by verdict")
+    listing.add_argument("--schema", action="store_true", help="a JSON schema of all parameters, for an editor")
     listing.set_defaults(function=list_command)
 
     add("show", "all there is about a claim, figure, equation, symbol, law, parameter or experiment", SHOW, "NAME")
@@ -384,6 +385,11 @@ def list_command(options: argparse.Namespace) -> int:
 
     if options.markdown:
         print(scoreboard.markdown())
+        return OK
+    if options.schema:
+        from dexrepro.report.schema import schema
+
+        print(json.dumps(schema(), indent=1))
         return OK
 
     data = listing()

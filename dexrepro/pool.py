@@ -271,8 +271,8 @@ def forget_edited() -> None:
 
 
 def start_method() -> str:
-    """How processes begin: as the program has set it, else by a fork on Linux, where that is quick and safe."""
-    chosen = multiprocessing.get_start_method(allow_none=True)
+    """How processes begin: as DEXREPRO_START or the program says; else by a fork on Linux, which is quick and safe."""
+    chosen = os.environ.get("DEXREPRO_START") or multiprocessing.get_start_method(allow_none=True)
     if chosen in multiprocessing.get_all_start_methods():  # joblib's workers have one of their own
         return chosen
     return "fork" if sys.platform == "linux" else "spawn"
