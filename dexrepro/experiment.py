@@ -146,7 +146,7 @@ class Experiment:
     stage(world, recording, config) -> Recording: for a film, adds what is only seen to the scene and returns channels
         under the names that ``World.snapshot`` reads.
 
-    ``figures.py`` may hold ``FIGURES``, ``TABLES``, ``FILM`` and
+    ``figures.py`` may hold ``FIGURES``, ``TABLES``, ``FILM``, ``UNITS`` (of channels, by name) and
 
     draw(recordings, metrics, config) -> {figure id: matplotlib Figure}: from what is on disk alone. A figure whose
         cases are missing is left out.
@@ -193,6 +193,11 @@ class Experiment:
     @property
     def film(self) -> Film | None:
         return self._part("figures", "FILM", None)
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Units of channels that are not the world's own, by name."""
+        return self._part("figures", "UNITS", {})
 
     @property
     def claims(self) -> tuple[Claim, ...]:

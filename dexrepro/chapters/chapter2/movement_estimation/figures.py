@@ -23,6 +23,7 @@ FIGURES = {
         "The estimated rest position follows the true one up to a constant offset of about 5 mm.",
     ),
 }
+UNITS = {"reference": "m", "rest_position": "m"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:

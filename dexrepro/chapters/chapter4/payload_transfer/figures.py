@@ -26,6 +26,7 @@ FIGURES = {
         "close.",
     ),
 }
+UNITS = {"error": "m", "tip": "m", "reference": "m", "position": "rad", "torque": "N m"}
 TABLES = {"T4.C": "Nine trajectories with a hanging payload: errors, bound and nodes by method"}
 FILM = Film(
     "reuse", "With what it learned the arm carries the loose payload from A to D, E and F (drawn hanging straight).",

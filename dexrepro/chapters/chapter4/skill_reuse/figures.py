@@ -54,6 +54,7 @@ FIGURES = {
     "4.9": Figure(WEIGHTS, "Weights for a threshold of 30 settle and ripple at the orbit's frequency."),
     "4.10": Figure(WEIGHTS, "For a threshold of 50 a single node carries the whole estimate."),
 }
+UNITS = {"error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²"}
 TABLES = {"T4.A": "Ellipse after training: errors, oscillation, nodes and gain of every method"}
 
 
