@@ -47,6 +47,9 @@ class Config(dict[str, Any]):
         return value
 
 
+ADDED = ("case", "seed", "perturbation", "engine")  # what a case is told beside its configuration
+
+
 def changed(case: Mapping[str, Any], shared: Mapping[str, Any], prefix: str = "") -> set[str]:
     """Dotted keys in which a case differs from its experiment's own block: what the case is."""
     found: set[str] = set()
@@ -54,7 +57,7 @@ def changed(case: Mapping[str, Any], shared: Mapping[str, Any], prefix: str = ""
         other = shared.get(key)
         if isinstance(value, Mapping) and isinstance(other, Mapping):
             found |= changed(value, other, f"{prefix}{key}.")
-        elif value != other:
+        elif value != other and (key in shared or key not in ADDED):
             found.add(f"{prefix}{key}")
     return found
 
