@@ -4,7 +4,7 @@ PYTHON ?=
 BIN := .venv/bin
 EXTRAS ?= dev,docs
 
-.PHONY: figures test check docs lint bench mutation wheel clean
+.PHONY: figures test check docs lint lock measure bench mutation wheel clean
 
 figures: .venv/ready
 	$(BIN)/dexrepro run
@@ -27,6 +27,17 @@ check: .venv/ready
 docs: .venv/ready
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet docs results/docs
 
+# .ci/lock.txt anew from pyproject.toml, versions as they are; UPGRADE="-P NAME" raises one, UPGRADE=-U all.
+lock: .venv/ready
+	.venv/uv/bin/uv --version >/dev/null 2>&1 || ($(BIN)/python -m venv .venv/uv && .venv/uv/bin/python -m pip install -q uv)
+	{ head -1 .ci/lock.txt; .venv/uv/bin/uv pip compile -q $(foreach extra,dev docs slurm,--extra $(extra)) --generate-hashes \
+	    --python-version 3.11.5 --python-platform x86_64-manylinux_2_28 --no-header --no-annotate $(UPGRADE) \
+	    $(if $(UPGRADE),,-c .ci/lock.txt) pyproject.toml; } > .venv/lock.txt && mv .venv/lock.txt .ci/lock.txt
+
+# What the two commands take, for the README: on a machine that does nothing else.   make measure PARTS=figures
+measure: .venv/ready
+	.ci/measure $(PARTS)
+
 bench: .venv/bench
 	$(BIN)/python -m pytest tests/bench -q -s -p no:xdist -o python_files='bench_*.py'
 
@@ -43,7 +54,7 @@ wheel: .venv/ready
 	$(BIN)/python -m twine check --strict dist/*
 	.ci/try-wheel dist/*.whl
 
-.venv/ready: pyproject.toml .ci/constraints.txt .ci/environment
+.venv/ready: pyproject.toml .ci/lock.txt .ci/environment
 	.ci/environment $(EXTRAS) $(PYTHON)
 	touch $@
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import logging
 import math
 import os
 import re
@@ -62,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.path.append("")  # a user's own classes, named by _target_: behind all that is installed
     try:
-        return _dispatch(_experiments_option(arguments))
+        return _dispatch(_global_options(arguments))
     except KeyboardInterrupt:
         err.print("interrupted; the same command completes what is missing", markup=False)
         return INTERRUPTED
@@ -94,13 +95,23 @@ def _dispatch(arguments: list[str]) -> int:
     return int(options.function(options))
 
 
-def _experiments_option(arguments: list[str]) -> list[str]:
-    """Add the folders that ``--experiments DIR`` names, before or behind any command; the other arguments."""
+class _ToTerminal(logging.Handler):
+    """Says what is logged where errors are said."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        err.print(record.getMessage(), markup=False)
+
+
+def _global_options(arguments: list[str]) -> list[str]:
+    """Heed ``--log`` and ``--experiments DIR``, before or behind any command; the other arguments."""
     from dexrepro import chapters
 
     parser = argparse.ArgumentParser(prog="dexrepro", add_help=False, allow_abbrev=False)
     parser.add_argument("--experiments", action="append", default=[], type=Path, metavar="DIR")
+    parser.add_argument("-v", "--log", action="store_true")
     options, rest = parser.parse_known_args(arguments)
+    logging.getLogger("dexrepro").handlers = [_ToTerminal()]
+    logging.getLogger("dexrepro").setLevel(logging.INFO if options.log else logging.WARNING)
     for folder in options.experiments:
         if not folder.is_dir():
             raise InputError(f"--experiments = {folder} is not allowed: there is no such folder")
@@ -123,6 +134,7 @@ def _parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     parser.add_argument("--version", action="version", version=f"dexrepro {__version__}")
     parser.add_argument("--experiments", metavar="DIR", help="experiments of your own, beside the book's")
+    parser.add_argument("-v", "--log", action="store_true", help="say what is read, and why something runs again")
     commands = parser.add_subparsers(required=True, metavar="command", dest="command")
 
     def add(name: str, help: str, more: str = "", metavar: str = "key=value") -> argparse.ArgumentParser:
@@ -145,6 +157,7 @@ def _parser() -> argparse.ArgumentParser:
     listing = commands.add_parser("list", help="chapters, experiments, cases, figures, claims, errata")
     listing.add_argument("--json", action="store_true", help="for programs, see docs/schemas")
     listing.add_argument("--markdown", action="store_true", help="the claims of the book counted by verdict")
+    listing.add_argument("--schema", action="store_true", help="a JSON schema of all parameters, for an editor")
     listing.set_defaults(function=list_command)
 
     add("show", "all there is about a claim, figure, equation, symbol, law, parameter or experiment", SHOW, "NAME")
@@ -173,6 +186,7 @@ def _parser() -> argparse.ArgumentParser:
     diff = commands.add_parser("diff", help="compare two results: configuration, metrics, verdicts, series")
     diff.add_argument("a", type=Path, help="folder of a result")
     diff.add_argument("b", type=Path, help="folder of another")
+    diff.add_argument("--html", type=Path, metavar="FILE", help="write a page instead, with both recordings to explore")
     diff.set_defaults(function=diff_command)
 
     completion = commands.add_parser("completion", help='for Tab: eval "$(dexrepro completion bash)"')
@@ -277,8 +291,8 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
         skipped |= chapter_skipped
     if settings.get("engine") is None and any(REFERENCE != plan.engine in plan.versions for plan in plans):
         err.print(
-            "PyBullet is not installed here (its wheels end at Python 3.11): MuJoCo simulates the arms; how its "
-            "numbers differ from those stored is in docs/how-to/engines.md"
+            "PyBullet is not installed here (its wheels are for Python 3.11 on Linux): MuJoCo simulates the arms; how "
+            "its numbers differ from those stored is in docs/how-to/engines.md"
         )
     quiet = bool(settings.get("quiet"))
     progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
@@ -343,8 +357,22 @@ def _print_summary(outcome: Any) -> None:
         if differs and name in outcome.folders:
             named = ", ".join(differs[:8]) + (f" and {len(differs) - 8} more" if len(differs) > 8 else "")
             out.print(f"{name} differs from the book in: {named}", markup=False)
+    for line in _claims_to_name(outcome):
+        out.print(line, markup=False)
     if not evaluated:
         out.print("claims whose metrics this run does not have are not evaluated")
+
+
+def _claims_to_name(outcome: Any) -> list[str]:
+    from dexrepro.baselines import Baseline
+    from dexrepro.report import verdicts
+    from dexrepro.storage import read_json
+
+    lines = []
+    for name, folder in outcome.folders.items():
+        run, claims = read_json(folder / "run.json"), read_json(folder / "claims.json")
+        lines += verdicts.to_name(claims, Baseline.of(run["chapter"], name).claims) if claims else []
+    return lines
 
 
 # --------------------------------------------------------------------------------------------------- other commands
@@ -357,6 +385,11 @@ def list_command(options: argparse.Namespace) -> int:
 
     if options.markdown:
         print(scoreboard.markdown())
+        return OK
+    if options.schema:
+        from dexrepro.report.schema import schema
+
+        print(json.dumps(schema(), indent=1))
         return OK
 
     data = listing()
@@ -456,6 +489,11 @@ def draw_command(options: argparse.Namespace) -> int:
     from dexrepro.selection import existing, quoted, selected
 
     numbers, only, results, _, extra = selected(options.selection, "draw")
+    given, look, kind = dict(word.partition("=")[::2] for word in options.selection), extra.pop("style", None), None
+    if look or "format" in extra:
+        from dexrepro.report import export
+
+        kind, look = export.checked(extra.pop("format", "pdf"), look or "paper")
     found = [(n, e, existing(results) / f"chapter{n}" / e.name) for n in numbers for e in select(n, only or None, None)]
     if extra:
         words = [quoted(f"results={results}"), *(quoted(f"case={value}") for value in extra.values())]
@@ -471,12 +509,17 @@ def draw_command(options: argparse.Namespace) -> int:
     status = OK
     for number, experiment, folder in found:
         try:
-            redraw(number, experiment.name, folder)
+            if kind and look:
+                made = export.export(experiment, folder, results / "figures" / look, kind, look, given.get("figure"))
+            else:
+                redraw(number, experiment.name, folder)
+                made = [folder]
         except Exception as error:  # a result of another version, say; the others can still be drawn
             err.print(f"{folder} cannot be drawn, run it again: {sentence(error)}", markup=False)
             status = FAILED
         else:
-            out.print(str(folder), markup=False)
+            for path in made:
+                out.print(str(path), markup=False)
     return status
 
 
@@ -570,9 +613,11 @@ def study_command(options: argparse.Namespace) -> int:
                 out.print(f"{name}: {carried} cases of samples carried over{differ}", markup=False)
                 continue
             try:
-                path = study.run(
-                    number, name, samples, results, workers=workers, hours=hours, update=options.update, engine=engine
-                )
+                cases = study.cases_of(number, name, values["case"].strip("[]")) if "case" in values else ()
+                if cases and options.update:
+                    raise InputError(f"case = {values['case']} is not allowed with --update: what is shipped is whole")
+                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update,
+                                 engine=engine, only=cases)  # fmt: skip
             except study.SamplesFailed as error:
                 err.print(str(error), markup=False)
                 return FAILED
@@ -734,8 +779,12 @@ def completion_command(options: argparse.Namespace) -> int:
 
 def diff_command(options: argparse.Namespace) -> int:
     """Compare two result folders."""
-    from dexrepro.report.compare import compare
+    from dexrepro.report.compare import compare, write_page
 
+    if options.html:
+        write_page(options.a, options.b, options.html)
+        out.print(str(options.html), markup=False)
+        return OK
     for line in compare(options.a, options.b):
         out.print(line, markup=False)
     return OK

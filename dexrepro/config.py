@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import logging
 import math
 import os
 import re
@@ -97,6 +98,7 @@ def _plain_settings(overrides: Sequence[str]) -> dict[str, Any] | None:
 
 
 INHERITS = "inherits"
+log = logging.getLogger(__name__)
 
 
 def inherited(composed: Mapping[str, Any]) -> dict[str, Any]:
@@ -221,6 +223,7 @@ def _shipped(folder: str, chapter: str, changed: float) -> dict[str, Any]:
     def composed() -> tuple[dict[str, Any], list[Path]]:
         files = config_files(chapter).values()
         folders = {path.parent for path in files} | {config_dir(), config_dir() / "chapter"}
+        log.info("composed chapter %s from %d files of %s", chapter, len(files), next(iter(folders)))
         return _compose(chapter), [Path(__file__), *files, *folders, *config_dir().rglob("*.yaml")]
 
     return dict(kept(f"chapter {chapter} of {folder}, {os.environ.get(chapters.ADDED)}", composed))

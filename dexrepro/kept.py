@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import logging
 import os
 import sys
 import time
@@ -14,6 +15,7 @@ from typing import Any
 
 from dexrepro import __version__
 
+log = logging.getLogger(__name__)
 SETTLED = 1.0  # s: what was written later than so long before it was read may be written again unnoticed
 FORGOTTEN = 60 * 24 * 3600.0  # s: what is older is found out again
 
@@ -29,7 +31,9 @@ def kept(what: str, make: Callable[[], tuple[Any, Iterable[Path] | None]]) -> An
     with suppress(OSError, ValueError, LookupError, TypeError, AttributeError):
         stored = json.loads(path.read_bytes())
         if all(_stamp(file) == stamp for file, stamp in stored["files"].items()):
+            log.info("%s: read from %s, none of its %d files has changed", what[:60], path, len(stored["files"]))
             return stored["value"]
+    log.info("%s: found out anew", what[:60])
     began = time.time_ns()
     value, files = make()
     with suppress(OSError, TypeError):

@@ -64,14 +64,19 @@ class Pool:
     """``add`` tasks, then take their ``results`` as they come; tasks may be added on the way.
 
     workers: processes at most (None: one a core); as many begin as there are tasks. ``report`` is told
-    (process, simulated time [s], duration [s]) by the simulations under way. here: use no other process.
+    (process, simulated time [s], duration [s]) by the simulations under way, ``tick`` is called while one waits for
+    them. here: use no other process.
     Leaving the block, by Ctrl-C too, ends the workers and what they have started.
     """
 
     def __init__(
-        self, workers: int | None = None, report: Callable[[int, float, float], None] | None = None, here: bool = False
+        self,
+        workers: int | None = None,
+        report: Callable[[int, float, float], None] | None = None,
+        here: bool = False,
+        tick: Callable[[], None] | None = None,
     ) -> None:
-        self.size, self.report, self.here = workers or available_cores(), report, here
+        self.size, self.report, self.here, self.tick = workers or available_cores(), report, here, tick
         self._context = multiprocessing.get_context(start_method())
         self._tasks: deque[_Task] = deque()
         self._workers: list[_Worker] = []
@@ -99,6 +104,8 @@ class Pool:
                 yield task.key, Failure.of(error)
         while self._tasks or any(worker.task for worker in self._workers):
             self._hand_out()
+            if self.tick:
+                self.tick()
             connections = {worker.connection: worker for worker in self._workers}
             for connection in wait(list(connections), TICK):
                 worker = connections[connection]
@@ -264,8 +271,8 @@ def forget_edited() -> None:
 
 
 def start_method() -> str:
-    """How processes begin: as the program has set it, else by a fork on Linux, where that is quick and safe."""
-    chosen = multiprocessing.get_start_method(allow_none=True)
+    """How processes begin: as DEXREPRO_START or the program says; else by a fork on Linux, which is quick and safe."""
+    chosen = os.environ.get("DEXREPRO_START") or multiprocessing.get_start_method(allow_none=True)
     if chosen in multiprocessing.get_all_start_methods():  # joblib's workers have one of their own
         return chosen
     return "fork" if sys.platform == "linux" else "spawn"

@@ -1,8 +1,9 @@
-"""What the user sees while cases run: a bar on a terminal, one line a case when piped, nothing when quiet."""
+"""What the user sees while cases run: a bar on a terminal, lines when piped, nothing when quiet."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from rich.console import Console
@@ -14,9 +15,10 @@ if TYPE_CHECKING:
 
 
 class Progress(Protocol):
-    """Told by the runner what happens."""
+    """Told by the runner what happens; ``tick`` is called several times a second."""
 
-    def begin(self, cases: int) -> None: ...
+    def begin(self, cases: Sequence[str], processes: int) -> None: ...
+    def tick(self) -> None: ...
     def report(self, process: int, simulated: float, duration: float) -> None: ...
     def note(self, sentence: str) -> None: ...
     def finished(self, name: str, entry: CaseEntry) -> None: ...
@@ -27,7 +29,10 @@ class Progress(Protocol):
 class Silent:
     """Shows nothing."""
 
-    def begin(self, cases: int) -> None:
+    def begin(self, cases: Sequence[str], processes: int) -> None:
+        pass
+
+    def tick(self) -> None:
         pass
 
     def report(self, process: int, simulated: float, duration: float) -> None:
@@ -46,19 +51,65 @@ class Silent:
         pass
 
 
+SILENCE = 10.0  # s after which a line says how far it is
+LONG = 20.0  # s: a run that takes longer says so when it begins
+
+
 class Lines(Silent):
-    """One line a finished case."""
+    """One line a finished case, and one at least every ten seconds; how long it will take, where that was measured."""
 
     def __init__(self, console: Console) -> None:
-        self.console = console
+        self.console, self.told, self.processes = console, time.monotonic(), 1
+        self.expected: dict[str, float] = {}  # s, of the cases that are not finished yet
+        self.waiting, self.cases, self.wall, self.foreseen = 0, 0, 0.0, 0.0
+        self.latest: dict[int, tuple[float, float, float, float]] = {}
+
+    def begin(self, cases: Sequence[str], processes: int) -> None:
+        self.expected, self.processes = expected(cases), max(1, min(processes, len(cases)))
+        self.cases = self.waiting = len(cases)
+        if self.left() > LONG:
+            beside = len(cases) - len(self.expected)
+            unknown = f", not counting {beside} that were never timed" if beside else ""
+            on = f"{self.processes} processes" if self.processes > 1 else "one process"
+            self.note(f"{len(cases)} cases on {on} take about {duration(self.left())}{unknown}")
+
+    def left(self) -> float:
+        """Seconds to go [s]: what the cases took when they were measured, at this machine's pace so far."""
+        pace = self.wall / self.foreseen if self.foreseen > 1 else 1.0
+        return sum(self.expected.values()) * pace / self.processes
+
+    def tick(self) -> None:
+        if self.waiting and time.monotonic() - self.told > SILENCE:
+            self.note(f"{self.cases - self.waiting} of {self.cases} cases{self.under_way()}{self.to_go()}")
+
+    def under_way(self) -> str:
+        now = time.monotonic()
+        active = [entry for entry in self.latest.values() if now - entry[1] < 3]
+        text = ", ".join(f"{t:.0f}/{total:.0f} s ({speed:.0f}x)" for t, _, total, speed in active)
+        return f", simulated {text}" if text else ""
+
+    def to_go(self) -> str:
+        return f", about {duration(self.left())} to go" if self.left() > 1 else ""
+
+    def report(self, process: int, simulated: float, duration: float) -> None:
+        now = time.monotonic()
+        before, then = self.latest.get(process, (0.0, now, 0.0, 0.0))[:2]
+        speed = (simulated - before) / (now - then) if simulated > before and now > then else 0.0
+        self.latest[process] = (simulated, now, duration, speed)
 
     def note(self, sentence: str) -> None:
         self.console.print(sentence, highlight=False, markup=False, soft_wrap=True)
+        self.told = time.monotonic()
 
     def finished(self, name: str, entry: CaseEntry) -> None:
+        self.waiting -= 1
+        if name in self.expected:
+            self.wall, self.foreseen = self.wall + entry.wall, self.foreseen + self.expected.pop(name)
         self.note(case_line(name, entry))
 
     def failed(self, name: str, sentence: str) -> None:
+        self.waiting -= 1
+        self.expected.pop(name, None)
         self.note(f"{name}: failed: {sentence}")
 
 
@@ -80,34 +131,45 @@ class Bar(Lines):
             console=console,
             transient=True,
         )
-        self.latest: dict[int, tuple[float, float, float, float]] = {}
 
-    def begin(self, cases: int) -> None:
-        self.task = self.bar.add_task("running", total=cases)
+    def begin(self, cases: Sequence[str], processes: int) -> None:
+        super().begin(cases, processes)
+        self.task = self.bar.add_task("running", total=len(cases))
         self.bar.start()
 
-    def report(self, process: int, simulated: float, duration: float) -> None:
-        now = time.monotonic()
-        before, then = self.latest.get(process, (0.0, now, 0.0, 0.0))[:2]
-        speed = (simulated - before) / (now - then) if simulated > before and now > then else 0.0
-        self.latest[process] = (simulated, now, duration, speed)
-        active = [entry for entry in self.latest.values() if now - entry[1] < 3]
-        text = ", ".join(f"{t:.0f}/{total:.0f} s ({speed:.0f}x)" for t, _, total, speed in active)
-        self.bar.update(self.task, description=f"simulated {text}" if text else "running")
-
-    def finished(self, name: str, entry: CaseEntry) -> None:
-        super().finished(name, entry)
-        self.bar.advance(self.task)
-
-    def failed(self, name: str, sentence: str) -> None:
-        super().failed(name, sentence)
-        self.bar.advance(self.task)
+    def tick(self) -> None:
+        said = f"running{self.under_way()}{self.to_go()}"
+        self.bar.update(self.task, description=said, completed=self.cases - self.waiting)
 
     def __enter__(self) -> Bar:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.bar.stop()
+
+
+def expected(cases: Sequence[str]) -> dict[str, float]:
+    """Seconds [s] that each case ``experiment.case`` took when it was measured; of a new one its experiment's mean."""
+    from dexrepro.measured import measured
+
+    seconds: dict[str, float] = measured().get("cases", {})
+    by_experiment: dict[str, list[float]] = {}
+    for name, value in seconds.items():
+        by_experiment.setdefault(name.partition(".")[0], []).append(value)
+    means = {name: sum(values) / len(values) for name, values in by_experiment.items()}
+    known = {name: seconds.get(name, means.get(name.partition(".")[0])) for name in cases}
+    return {name: value for name, value in known.items() if value is not None}
+
+
+def duration(seconds: float) -> str:
+    """A time as one says it: 40 s, 12 min, 2.5 h."""
+    return (
+        f"{seconds:.0f} s"
+        if seconds < 90
+        else f"{seconds / 60:.0f} min"
+        if seconds < 5400
+        else f"{seconds / 3600:.1f} h"
+    )
 
 
 def case_line(name: str, entry: CaseEntry) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import platform
 import shutil
@@ -20,9 +21,10 @@ from typing import Any
 from dexrepro import __version__, chapters
 from dexrepro.case import live
 from dexrepro.case import run as run_case
+from dexrepro.checks import differences
 from dexrepro.errors import InputError
-from dexrepro.experiment import Config, Experiment, Metrics
-from dexrepro.plan import PARTIAL, Job, Plan, import_anew, own_digest, presentation
+from dexrepro.experiment import Config, Experiment, Metrics, Recording
+from dexrepro.plan import PARTIAL, Job, Plan, import_anew, outdated, own_digest, presentation
 from dexrepro.pool import COMPLETES, Failure, Pool, start_method
 from dexrepro.progress import Progress, Silent
 from dexrepro.storage import (
@@ -41,6 +43,8 @@ from dexrepro.storage import (
 )
 
 PACKAGES = ("pandas", "matplotlib", "hydra-core")  # beside those that can change a number
+log = logging.getLogger(__name__)
+SHOWN = 6  # differences that are named
 SUMMARY = "summary"  # stands for the numbers over several cases in nested metrics
 KEPT, RECENT = 6, 7 * 24 * 3600  # cached results a case: so many, and all of the last seconds (a sweep may need them)
 
@@ -224,10 +228,11 @@ def _of_some_cases(differs: Sequence[str]) -> bool:
     return any(text.startswith(PARTIAL) for text in differs)
 
 
-def present(chapter: str, experiment: Experiment, folder: Path) -> None:
-    """Numbers over several cases, claims, tables and figures of a result folder, from its files alone."""
+def recorded(
+    experiment: Experiment, folder: Path
+) -> tuple[dict[str, Recording], dict[str, Metrics], Config, list[str]]:
+    """What a result's files hold: recordings and metrics by case, those over several cases, values, what differs."""
     from dexrepro.recordings import load_recording
-    from dexrepro.report import style
 
     run = read_json(folder / "run.json")
     config = Config.of(read_yaml(folder / "config.yaml"))
@@ -238,22 +243,30 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
             nested[first][rest[0]] = value
     if not _of_some_cases(run["differs"]):  # a number over the cases is one over all of them
         summarise(experiment, nested, config)
-    flat_metrics = flat(experiment.name, nested)
-    write_json(folder / "metrics.json", flat_metrics)
     recordings = {
         case: load_recording(folder / "series", case, entry["status"]) for case, entry in run["cases"].items()
     }
+    return recordings, nested, config, run["differs"]
+
+
+def present(chapter: str, experiment: Experiment, folder: Path) -> None:
+    """Numbers over several cases, claims, tables and figures of a result folder, from its files alone."""
+    from dexrepro.report import style
+
+    recordings, nested, config, differs = recorded(experiment, folder)
+    flat_metrics = flat(experiment.name, nested)
+    write_json(folder / "metrics.json", flat_metrics)
     claims = [claim.evaluate(flat_metrics).as_dict() for claim in chapters.load(chapter).claims_of(experiment.name)]
     write_json(folder / "claims.json", claims)
     for name in ("tables", "figures"):
         shutil.rmtree(folder / name, ignore_errors=True)
         (folder / name).mkdir()
     if tabulate := experiment.function("tabulate"):
-        with _lenient(run["differs"]):
+        with _lenient(differs):
             for identifier, table in tabulate(recordings, nested, config).items():
                 table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
     if draw := experiment.function("draw"):
-        with style.style(), _lenient(run["differs"]):
+        with style.style(), _lenient(differs):
             for identifier, figure in draw(recordings, nested, config).items():
                 style.save(figure, folder / "figures", identifier)
 
@@ -336,13 +349,17 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     again: list[Plan] = []
     for plan in plans:
         if not force and up_to_date(plan):
+            log.info("%s: up to date in %s", plan.experiment, plan.folder)
             outcome.folders[plan.experiment] = plan.folder
             continue
         missing = [job for job in plan.jobs if force or stored_case(job) is None]
         if missing and not force and up_to_date(plan, presented=False):  # it has what the cache has lost
             again.append(plan)
             continue
+        log.info("%s: %s; %d of %d cases are cached", plan.experiment, "force=true" if force else _why_again(plan),
+                 len(plan.jobs) - len(missing), len(plan.jobs))  # fmt: skip
         for job in missing:
+            log.info("%s: %s", job.name, _why_run(job))
             if Path(job.folder).exists() and not force:
                 progress.note(f"{job.name} is damaged in {Path(job.folder).parent}: run again")
         waiting[plan.experiment] = {job.case for job in missing}
@@ -360,14 +377,14 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
         engine.engine()
     here = any(job.gui or (start_method() != "fork" and "__main__." in str(job.config)) for job in todo)
     try:
-        with Pool(workers, progress.report, here) as pool:
+        with Pool(workers, progress.report, here, progress.tick) as pool:
             for job in todo:
                 pool.add(job, execute if force else complete, job, timeout=job.timeout)
             for name in (name for name, cases in waiting.items() if not cases):
                 pool.add(by_name[name], assemble, by_name[name])
             for plan in again:
                 pool.add(plan, redraw, plan.chapter, plan.experiment, plan.folder)
-            progress.begin(len(todo))
+            progress.begin([job.name for job in todo], pool.size)
             repeated: set[str] = set()
             for task, value in pool.results():
                 plan = by_name[task.experiment]
@@ -396,6 +413,27 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
         for parent in parents:  # of workers that were ended
             remove_leftovers(parent)
     return outcome
+
+
+def _why_again(plan: Plan) -> str:
+    """Why a result is not taken as it is."""
+    try:
+        return outdated(plan, read_json(plan.folder / "run.json")) or "its result is not whole or of other packages"
+    except (OSError, ValueError):
+        return f"there is no result in {plan.folder}"
+
+
+def _why_run(job: Job) -> str:
+    """Why the cache does not have a case: in what it differs from the one of its name that was run last."""
+    earlier = sorted(Path(job.folder).parent.glob(f"{job.case}-*/case.json"), key=lambda path: path.stat().st_mtime)
+    if not earlier:
+        return f"runs, it is not in {Path(job.folder).parent}"
+    try:
+        changed = differences(job.config, read_json(earlier[-1])["config"])
+    except (OSError, ValueError, KeyError):
+        changed = []
+    named = ", ".join(changed[:SHOWN]).replace("(book: ", "(was: ")
+    return f"runs again: {named or 'code or a file that it uses, or the version of a package changed'}"
 
 
 def up_to_date(plan: Plan, presented: bool = True) -> bool:

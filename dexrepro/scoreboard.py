@@ -8,8 +8,10 @@ from __future__ import annotations
 from typing import Any
 
 from dexrepro import baselines, chapters, study
-from dexrepro.claims import AFTER_CORRECTION, REPRODUCED, ROBUST, VERDICTS
+from dexrepro.claims import AFTER_CORRECTION, FRAGILE, OPEN, REPRODUCED, ROBUST, VERDICTS
 from dexrepro.report.listing import chapter_listing
+
+WORDS = (ROBUST, FRAGILE, OPEN)  # what studies show of the claims that hold
 
 
 def rows() -> list[dict[str, Any]]:
@@ -23,7 +25,9 @@ def _row(number: str) -> dict[str, Any]:
     metrics = {name: entry["value"] for baseline in stored for name, entry in baseline.metrics.items()}
     evaluated = [claim.evaluate(metrics) for claim in chapter.claims if claim.source == "book"]
     words = study.robustness_of(number)
-    severe = [item for item in evaluated if item.verdict in (REPRODUCED, AFTER_CORRECTION) and item.severe]
+    hold = [item for item in evaluated if item.verdict in (REPRODUCED, AFTER_CORRECTION)]
+    severe = [item for item in hold if item.severe]
+    shown = [words.get(item.id, OPEN) for item in hold]
     return {
         "chapter": number,
         "title": chapter.title,
@@ -31,6 +35,7 @@ def _row(number: str) -> dict[str, Any]:
         "tables": sum(len(experiment["tables"]) for experiment in listed),
         "claims": len(evaluated),
         **{verdict: sum(item.verdict == verdict for item in evaluated) for verdict in VERDICTS},
+        **{word: shown.count(word) for word in WORDS},
         "severe": len(severe),
         "headline": sum(words.get(item.id) == ROBUST for item in severe if item.verdict == REPRODUCED),
         "headline after correction": sum(words.get(item.id) == ROBUST for item in severe if item.verdict != REPRODUCED),
@@ -41,6 +46,7 @@ COLUMNS = {
     "chapter": "chapter", "figures": "figures", "tables": "tables", "claims": "claims of the book",
     "headline": "reproduced, severely tested and robust", "severe": "hold and are severely tested",
     **{verdict: verdict for verdict in VERDICTS},
+    ROBUST: "hold, robust", FRAGILE: "hold, fragile", OPEN: "hold, open or no study",
 }  # fmt: skip
 
 

@@ -12,6 +12,7 @@ shares the results folder: its processes share the samples.
 
 from __future__ import annotations
 
+import fnmatch
 import gzip
 import json
 import re
@@ -42,7 +43,9 @@ from dexrepro.plan import content_of, uses_engine
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.provenance import Provenance, provenance
 from dexrepro.runner import flat, summarise
-from dexrepro.storage import claimed, finite, locked, read_json, write_json, write_text
+from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
+
+Cases = tuple[str, ...]
 
 
 class SamplesFailed(Exception):
@@ -61,6 +64,21 @@ def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list
     if claim not in by_id:
         raise InputError(f"unknown claim '{claim}' in chapter {chapter}: {nearest(claim, by_id)}")
     return [by_id[claim].experiment]
+
+
+def cases_of(chapter: str, experiment: str, wanted: str) -> Cases:
+    """The cases that names and patterns parted by commas mean. Raises InputError where one means none, or no claim is
+    about them alone."""
+    names = list(draw(chapter, experiment, 0)[1]["cases"])
+    for pattern in wanted.split(","):
+        if not fnmatch.filter(names, pattern):
+            raise InputError(f"unknown case '{pattern}' of {experiment}: {nearest(pattern, names)}")
+    chosen = tuple(name for name in names if any(fnmatch.fnmatchcase(name, p) for p in wanted.split(",")))
+    predicates = [claim.predicate for claim in chapters.load(chapter).claims_of(experiment) if claim.predicate]
+    about = [{name.split(".")[1] if name.count(".") > 1 else "" for name in found.metrics} for found in predicates]
+    if not any(cases <= set(chosen) for cases in about):
+        raise InputError(f"case = {wanted} is not allowed: no claim of {experiment} is about these cases alone")
+    return chosen
 
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the margin, in a summary
@@ -131,19 +149,24 @@ def within(share: float, low: float, high: float, whole: bool = False) -> float:
 
 
 def evaluate(
-    chapter: str, experiment: str, index: int, known: Mapping[str, Any], engine: str = REFERENCE
+    chapter: str,
+    experiment: str,
+    index: int,
+    known: Mapping[str, Any],
+    engine: str = REFERENCE,
+    only: Cases = (),
 ) -> dict[str, Any]:
     """One sample: what was drawn and, of every case that a claim is about, the key of its simulation and its metrics.
 
     known: cases that were run before, by the key of their simulation; they are taken over. engine: of the simulations;
-    a sample says which it was, where it is not that of the baselines.
+    a sample says which it was, where it is not that of the baselines. only: some of the cases.
     """
     physics.use(engine)
     values, block = draw(chapter, experiment, index)
     seed = int(values["seed"])
     loaded = chapters.load(chapter)
     definition, cases = loaded.experiment(experiment), {}
-    for case in _cases_of(loaded.claims_of(experiment), block["cases"]):
+    for case in _cases_of(loaded.claims_of(experiment), block["cases"], only):
         config = _values(block, case, seed, engine)
         content = content_of(definition, config)
         if content in known:
@@ -166,25 +189,25 @@ def _told(engine: str) -> dict[str, str]:
     return {} if engine == REFERENCE else {"engine": engine}
 
 
-def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any], results: Path) -> bool:
+def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any], results: Path, only: Cases = ()) -> bool:
     """Whether a stored sample has every case that the claims are about, under its present simulation.
 
     One of another engine counts as long as the cross-check shows that it decides every claim alike.
     """
     if "engine" in entry and not crosscheck.agrees_on(experiment, results):
         return False
-    contents = _contents(chapter, experiment, entry)
+    contents = _contents(chapter, experiment, entry, only)
     return all(entry["cases"].get(case, {}).get("content") == content for case, content in contents.items())
 
 
-def _contents(chapter: str, experiment: str, entry: Mapping[str, Any]) -> dict[str, str]:
+def _contents(chapter: str, experiment: str, entry: Mapping[str, Any], only: Cases = ()) -> dict[str, str]:
     """The key of the present simulation of every case that a claim is about, in one sample."""
     values, block = draw(chapter, experiment, entry["index"])
     loaded, seed = chapters.load(chapter), int(values["seed"])
     definition = loaded.experiment(experiment)
     return {
         case: content_of(definition, _values(block, case, seed, entry.get("engine", REFERENCE)))
-        for case in _cases_of(loaded.claims_of(experiment), block["cases"])
+        for case in _cases_of(loaded.claims_of(experiment), block["cases"], only)
     }
 
 
@@ -255,8 +278,10 @@ def _rounded(numbers: Mapping[str, float | None]) -> dict[str, float | None]:
     return {key: value if value is None else float(f"{value:.6g}") for key, value in numbers.items()}
 
 
-def _cases_of(claims: Sequence[Claim], cases: Mapping[str, Any]) -> list[str]:
-    """The cases that the claims are about: all as soon as a claim needs a number over several cases."""
+def _cases_of(claims: Sequence[Claim], cases: Mapping[str, Any], only: Cases = ()) -> list[str]:
+    """The cases that the claims are about, all as soon as a claim needs a number over several; of them only some."""
+    if only:
+        return [case for case in cases if case in only]
     parts = [name.split(".") for claim in claims for name in claim.metrics]
     if any(len(part) < 3 for part in parts):
         return list(cases)
@@ -273,13 +298,15 @@ def run(
     hours: float | None = None,
     update: bool = False,
     engine: str = REFERENCE,
+    only: Cases = (),
 ) -> Path:
     """Evaluate what is missing of ``samples`` samples, store all there are with their summary; returns its path.
 
     samples: None takes as many as decide every claim, 100 at most. ``update`` renews the study that is shipped. engine:
-    of the samples made now. Raises InputError where a summary of more samples, of another configuration, would be
-    replaced, or where the engine is not known to decide every claim as that of the baselines does, and SamplesFailed,
-    at the end, where a sample could not be made.
+    of the samples made now. only: run these cases alone, for the claims about no other, with a summary of their own.
+    Raises InputError where a summary of more samples, of another configuration, would be replaced, or where the engine
+    is not known to decide every claim as that of the baselines does, and SamplesFailed, at the end, where a sample
+    could not be made.
     """
     if not uses_engine(chapters.load(chapter).experiment(experiment)):
         engine = REFERENCE
@@ -289,19 +316,21 @@ def run(
             f"verdicts under both engines; ask: dexrepro crosscheck chapter={chapter} only={experiment}"
         )
     target = summary_file(experiment, results, update)
+    if only:
+        target = _folder(results) / "cases" / f"{experiment}-{digest_of([*only])[:10]}.json"
     for folder in (target.parent, _folder(results)):
         folder.mkdir(parents=True, exist_ok=True)
     if samples is not None:
         _refuse_fewer(chapter, experiment, samples, results, target)
     deadline = time.time() + 3600 * hours if hours else float("inf")
     for look in [samples] if samples is not None else LOOKS:
-        done = _kept(chapter, experiment, results)
+        done = _kept(chapter, experiment, results, only=only)
         with Pool(workers) as pool:
             for index in (index for index in range(look) if index not in done):
-                pool.add(index, contribute, chapter, experiment, index, results, deadline, engine)
+                pool.add(index, contribute, chapter, experiment, index, results, deadline, engine, only)
             failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
         with locked(_folder(results)):  # who ends last sees every sample
-            entries = list(_kept(chapter, experiment, results).values())
+            entries = list(_kept(chapter, experiment, results, only=only).values())
             found = summary(chapter, experiment, entries)
             if len(entries) >= _held(target):  # fewer where the hours are over
                 _write_lines(_lines(target), entries)
@@ -326,11 +355,17 @@ def _refuse_fewer(chapter: str, experiment: str, samples: int, results: Path, ta
 
 
 def contribute(
-    chapter: str, experiment: str, index: int, results: Path, deadline: float, engine: str = REFERENCE
+    chapter: str,
+    experiment: str,
+    index: int,
+    results: Path,
+    deadline: float,
+    engine: str = REFERENCE,
+    only: Cases = (),
 ) -> None:
     """Evaluate one sample and add its line, unless another process does or has done so, or it is too late."""
     with claimed(_folder(results), f"{experiment}.{index}", wait=False) as mine:
-        if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index):
+        if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index, only):
             return
         known = {
             row["content"]: row
@@ -338,19 +373,22 @@ def contribute(
             if entry["index"] == index
             for row in entry["cases"].values()
         }
-        line = _line(evaluate(chapter, experiment, index, known, engine))
+        line = _line(evaluate(chapter, experiment, index, known, engine, only))
         with locked(_folder(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
             file.seek(max(file.tell() - 1, 0))
             cut_short = file.read(1) not in (b"", b"\n")
             file.write(b"\n" * cut_short + line.encode())
 
 
-def _kept(chapter: str, experiment: str, results: Path, only: int | None = None) -> dict[int, dict[str, Any]]:
+def _kept(
+    chapter: str, experiment: str, results: Path, number: int | None = None, only: Cases = ()
+) -> dict[int, dict[str, Any]]:
     """The samples there are, shipped or made here, of the present simulations, in the order of index."""
     found = {}
     for entry in _all(experiment, results):
-        if only in (None, entry["index"]) and _is_present(chapter, experiment, entry, results):
-            found[entry["index"]] = {**entry, "values": draw(chapter, experiment, entry["index"])[0]}
+        if number in (None, entry["index"]) and _is_present(chapter, experiment, entry, results, only):
+            cases = {case: row for case, row in entry["cases"].items() if not only or case in only}
+            found[entry["index"]] = {**entry, "values": draw(chapter, experiment, entry["index"])[0], "cases": cases}
     return dict(sorted(found.items()))
 
 

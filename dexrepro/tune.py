@@ -45,7 +45,10 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True)
 class Search:
-    """What is tuned: a case of resolved ``values``, ranges by dotted key, a metric; ``sign`` is -1 to maximise it."""
+    """What is tuned: a case of resolved ``values``, ranges by dotted key, a metric; ``sign`` is -1 to maximise it.
+
+    listed: the case is made from a list (``each``), so that only all of its experiment can be overridden.
+    """
 
     chapter: str
     experiment: str
@@ -55,6 +58,7 @@ class Search:
     metric: str
     sign: int
     seed: int
+    listed: bool = False
 
     @property
     def name(self) -> str:
@@ -81,12 +85,13 @@ class Search:
 
     def override(self, chosen: Mapping[str, float]) -> str:
         """The words that give the case these parameters; a list is given whole."""
+        place = self.experiment if self.listed else f"++{self.experiment}.cases.{self.case}"
         config, words = self.config(chosen), {}
         for key in chosen:
             while key.rpartition(".")[2].isdigit():
                 key = key.rpartition(".")[0]
             text = str(value_at(config, key)).replace(" ", "")
-            words[key] = f"'++{self.name.replace('.', '.cases.', 1)}.{key}={text}'"
+            words[key] = f"'{place}.{key}={text}'"
         return " ".join(words.values())
 
 
@@ -122,7 +127,8 @@ def search_of(
     ranges = dict(_asked(word, values, declared) for word in parameters) or _of_laws(
         values, declared, composed[experiment]
     )
-    return Search(numbers[0], experiment, name, values, ranges, metric, sign, composed["seed"])
+    listed = name not in (composed[experiment].get("cases") or {"default": {}})
+    return Search(numbers[0], experiment, name, values, ranges, metric, sign, composed["seed"], listed)
 
 
 def _declared(chapter: str, experiment: str, composed: Mapping[str, Any]) -> dict[str, Range]:

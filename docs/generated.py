@@ -85,13 +85,7 @@ def _commands() -> Pages:
     (commands,) = (action for action in cli._parser()._actions if action.dest == "command")
     text = ["# Commands", "As each command tells it by `--help`."]
     text += ["| exit status | means |", "| --- | --- |"]
-    statuses = {
-        cli.OK: "done; `check`: the same as stored",
-        cli.FAILED: "a case failed; `check`: something differs",
-        cli.WRONG: "the input cannot be used, or results are missing; one sentence says what",
-        cli.INTERRUPTED: "interrupted; the same command completes what is missing",
-    }
-    text += [f"| {status} | {meaning} |" for status, meaning in statuses.items()]
+    text += [f"| {status} | {meaning} |" for status, meaning in cli.STATUSES.items()]
     text = ["\n\n".join(text[:2]), "\n".join(text[2:])]
     for command in commands.choices or ():
         told = subprocess.run(

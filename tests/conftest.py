@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
 import os
 import shutil
 import signal
@@ -17,8 +16,6 @@ import pytest
 import dexrepro
 from dexrepro import chapters, cli
 
-if method := os.environ.get("DEXREPRO_TEST_START"):  # spawn: as processes begin on macOS and Windows
-    multiprocessing.set_start_method(method, force=True)
 ROOT = Path(dexrepro.__file__).parent.parent
 TOY = Path(__file__).parent / "toy"
 

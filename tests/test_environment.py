@@ -14,7 +14,7 @@ from conftest import ROOT
 pytestmark = pytest.mark.skipif(
     (platform.system(), platform.machine()) != ("Linux", "x86_64"), reason="PyBullet has wheels for Linux on x86_64"
 )
-TOOLS = ("sh", "env", "dirname", "basename", "uname", "cat", "chmod", "mkdir", "rm", "cp")
+TOOLS = ("sh", "env", "dirname", "basename", "uname", "cat", "chmod", "mkdir", "rm", "cp", "sed")
 STUB = """#!/bin/sh
 case "$1 $2" in
     "-c "*) echo {version} ;;
@@ -38,7 +38,8 @@ class Machine:
         self.path, self.log, self.project = folder / "path", folder / "log", folder / "project"
         for made in (self.path, self.project / ".ci"):
             made.mkdir(parents=True)
-        shutil.copy(ROOT / ".ci/environment", self.project / ".ci")
+        for name in ("environment", "lock.txt"):
+            shutil.copy(ROOT / ".ci" / name, self.project / ".ci")
         for tool in TOOLS:
             (self.path / tool).symlink_to(str(shutil.which(tool)))
         self.python("3.11", self.project.parent / "fetched")
@@ -67,7 +68,7 @@ def machine(tmp_path: Path) -> Machine:
 
 
 def installed(calls: list[str]) -> str:
-    return next(line for line in calls if "-c .ci/constraints.txt" in line)
+    return next(line for line in calls if "--require-hashes -r .ci/lock.txt" in line)
 
 
 def test_a_python_with_wheels_is_used_wherever_it_stands_and_nothing_is_compiled(machine: Machine) -> None:
@@ -79,7 +80,16 @@ def test_a_python_with_wheels_is_used_wherever_it_stands_and_nothing_is_compiled
     assert "--only-binary :all:" in installed(calls)
 
 
-@pytest.mark.parametrize("version", ["3.10", "3.12", "3.13", "3.14"])
+def test_the_project_follows_with_the_same_versions(machine: Machine) -> None:
+    machine.python("3.11.9", machine.path / "python3")
+    machine.set_up()
+    assert machine.set_up()[2][-1].endswith("-c .venv/pins.txt -e .[dev]")
+    pins = (machine.project / ".venv/pins.txt").read_text().splitlines()
+    assert "numpy==" in "".join(pin[:7] for pin in pins)
+    assert len(pins) == (ROOT / ".ci/lock.txt").read_text().count("==")
+
+
+@pytest.mark.parametrize("version", ["3.10", "3.11.2", "3.12", "3.13", "3.14"])
 def test_where_there_is_another_python_pip_brings_uv_and_uv_a_python(machine: Machine, version: str) -> None:
     pip = f'd=$(dirname "$0"); cp {machine.path / "uv-to-be"} $d/uv'
     machine.put(machine.path / "uv-to-be", machine.uv())
@@ -116,7 +126,7 @@ def test_where_nothing_can_be_fetched_two_sentences_say_what_to_install(machine:
     assert said.splitlines()[0] == "dexrepro: no Python 3.11 was found, and neither uv nor conda could fetch one."
     assert said.splitlines()[1].startswith("dexrepro: Install Python 3.11 ")
     assert len(said.splitlines()) == 2
-    assert not any("constraints" in line for line in calls)
+    assert not any("lock.txt" in line for line in calls)
 
 
 def test_a_python_that_is_asked_for_is_taken_or_refused(machine: Machine) -> None:
@@ -133,4 +143,4 @@ def test_an_environment_that_suits_is_kept(machine: Machine) -> None:
     machine.python("3.11")
     machine.set_up()
     _, _, calls = machine.set_up()
-    assert sum("venv" in line for line in calls) == 1
+    assert sum(" venv " in line for line in calls) == 1

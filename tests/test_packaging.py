@@ -17,6 +17,11 @@ from dexrepro.report.listing import listing
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 
 
+PINS = re.findall(
+    r"^([\w.-]+)==(\S+)((?: \\\n    --hash=\S+)+)$", (ROOT / ".ci/lock.txt").read_text("utf-8"), re.MULTILINE
+)
+
+
 def tool(*command: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=120)
 
@@ -36,10 +41,24 @@ def test_every_dependency_is_pinned_and_in_the_conda_environment() -> None:
     needed = requirements(PROJECT["dependencies"])
     conda = requirements([x for x in yaml.safe_load((ROOT / ".ci/environment.yml").read_text())["dependencies"]])
     assert {name: conda.get(name) for name in needed} == needed
-    pins = dict(line.split("==") for line in (ROOT / ".ci/constraints.txt").read_text().split())
-    pinned = {name.lower().replace("_", "-") for name in pins}
+    pinned = {name.lower().replace("_", "-") for name, *_ in PINS}
     extras = [line for extra in ("dev", "docs") for line in PROJECT["optional-dependencies"][extra]]
     assert {*needed, *requirements(extras)} <= pinned
+
+
+def test_the_manual_says_why_of_every_dependency() -> None:
+    said = (ROOT / "docs/reference/dependencies.md").read_text("utf-8").lower()
+    named = {
+        name.strip() for row in re.findall(r"^\| ([^|]+)\|", said, re.MULTILINE) for name in re.split(r"[,()`]", row)
+    }
+    every = [*PROJECT["dependencies"], *(line for lines in PROJECT["optional-dependencies"].values() for line in lines)]
+    assert {re.match(r"[\w.-]+", line)[0].lower() for line in every} <= named  # type: ignore[index]
+
+
+def test_every_file_that_is_installed_is_known_by_its_hash() -> None:
+    assert len(PINS) > 100
+    for name, _, hashes in PINS:
+        assert re.findall(r"--hash=sha256:[0-9a-f]{64}\b", hashes), name
 
 
 def test_the_container_is_as_the_linter_wants_it() -> None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import importlib.util
 import json
 import re
+import runpy
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +16,7 @@ import pytest
 from conftest import ROOT, Shell
 from test_cli import SHORT
 
-from dexrepro import chapters, scoreboard
+from dexrepro import chapters, measured, scoreboard
 
 README = (ROOT / "README.md").read_text()
 PAGES = [README, *(path.read_text() for path in sorted((ROOT / "docs").glob("*.md")))]
@@ -205,3 +207,21 @@ def test_the_script_for_slurm_runs_a_sweep_like_that_of_the_readme() -> None:
 
 def test_the_table_counts_the_stored_verdicts() -> None:
     assert scoreboard.markdown() in README, "dexrepro list --markdown prints the table as it must stand"
+
+
+def test_what_the_commands_take_is_what_was_measured() -> None:
+    """``make measure`` writes both; the estimate at the start of a run has a time for the cases that were measured."""
+    assert f"<!-- measured -->\n{measured.markdown()}\n<!-- end -->" in README
+    known = measured.measured()["cases"]
+    experiments = {name for number in chapters.numbers() for name in chapters.names(number)}
+    assert {name.partition(".")[0] for name in known} <= experiments
+    assert all(seconds >= 0 for seconds in known.values())
+
+
+def test_a_measurement_counts_time_memory_and_disk(tmp_path: Path) -> None:
+    measure = runpy.run_path(str(ROOT / ".ci/measure"))["measure"]
+    write = "from pathlib import Path; Path('it').write_bytes(bytes(30_000_000)); x = bytearray(200_000_000); "
+    found = measure([sys.executable, "-c", f"{write} import time; time.sleep(1.5)"], tmp_path)
+    assert found["seconds"] >= 1.5
+    assert 0.2 <= found["memory"] < 0.4
+    assert found["disk"] == 0.03

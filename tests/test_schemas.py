@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,11 @@ import pytest
 from conftest import ROOT
 from jsonschema import Draft202012Validator, ValidationError
 
-from dexrepro import cli, study
+from dexrepro import chapters, cli, study
+from dexrepro.config import compose_chapter
 from dexrepro.plan import plan_chapter
 from dexrepro.report.listing import listing
+from dexrepro.report.schema import schema
 from dexrepro.runner import run_plans
 
 SCHEMAS = {path.name.partition(".")[0]: path for path in (ROOT / "docs/schemas").glob("*.json")}
@@ -55,6 +58,22 @@ def test_what_is_shipped_and_listed_is_as_the_schemas_say() -> None:
     valid("crosscheck", json.loads((ROOT / "results/baselines/crosscheck.json").read_text("utf-8")))
     for path in (ROOT / "results/baselines/study").glob("*.json"):
         valid("study", json.loads(path.read_text("utf-8")))
+
+
+def test_the_configuration_is_as_its_schema_says_and_a_mistake_is_not() -> None:
+    """The schema that an editor gets for files of the user's own."""
+    found = Draft202012Validator(schema())
+    found.check_schema(found.schema)
+    for number in chapters.numbers():
+        found.validate({key: value for key, value in compose_chapter(number).items() if key != "hydra"})
+    for wrong in (
+        {"movement_estimation": {"duration": "long"}},
+        {"force_tracking": {"motion": "jump"}},
+        {"movement_estimation": 3},
+    ):
+        assert not found.is_valid(wrong)
+    described = found.schema["properties"]["movement_estimation"]["properties"]["rest_length"]["description"]
+    assert re.fullmatch(r"\[m\] chosen: .+ \([\d.]+ to [\d.]+\)", described)
 
 
 STORED = {"value": 1, "rtol": 0, "atol": 0}

@@ -53,6 +53,23 @@ def test_only_the_cases_of_claims_are_run(folder: Path, monkeypatch: pytest.Monk
     assert study._cases_of([*claims, over_all], cases) == list(cases)
 
 
+def test_some_cases_are_studied_for_the_claims_about_no_other(folder: Path) -> None:
+    cases = study.cases_of("90", "decay", "gain*")
+    assert cases == ("gain1", "gain2")
+    path = study.run("90", "decay", 2, RESULTS, workers=1, only=cases)
+    assert path.parent.name == "cases"
+    assert not study.summary_file("decay", RESULTS).exists(), "it stands for no whole study"
+    about = [c.id for c in study.chapters.load("90").claims_of("decay") if all(".gain" in n for n in c.metrics)]
+    assert sorted(read_json(path)["claims"]) == sorted(about) != []
+    whole = read_json(study.run("90", "decay", 2, RESULTS, workers=1))
+    assert set(whole["claims"]) > set(about)
+    assert whole["samples"] == 2
+    with pytest.raises(InputError, match="unknown case 'gone'"):
+        study.cases_of("90", "decay", "gone")
+    with pytest.raises(InputError, match="no claim of decay is about these cases alone"):
+        study.cases_of("90", "decay", "halved")
+
+
 def test_a_case_that_fails_leaves_the_claims_of_the_others(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     values, block = study.draw("90", "decay", 0)
     block["cases"]["gain2"]["fail"] = True

@@ -70,6 +70,11 @@ def test_the_line_that_is_printed_reproduces_the_best(toy, command):
     assert json.loads(metrics.read_text())["decay.plain.final"] == pytest.approx(json.loads(stored.read_text())["best"])
 
 
+def test_a_case_made_from_a_list_is_overridden_with_all_of_its_experiment(toy):
+    assert tune.search_of("decay.gain2", "final", 1, ["start"]).override({"start": 0.5}) == "'decay.start=0.5'"
+    assert tune.search_of("decay.fast", "final", 1).override({"start": 0.5}) == "'++decay.cases.fast.start=0.5'"
+
+
 def test_words_that_are_missing_or_wrong_are_one_sentence(toy, command):
     for words, said in {
         "tune minimise=final": "case= is missing",

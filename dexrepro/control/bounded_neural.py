@@ -28,10 +28,10 @@ CLIP = 0.9998  # share of the bound beyond which the barrier's push no longer gr
 class BoundedNeuralTracking:
     """tau = M alpha' + C alpha + G + K_tau delta + rho F - tau_e + W^T S(z), Eq. (5.32) corrected.
 
-    M, C, G are taken at (q_d, q_d'). e = q_d - q, alpha = q_d' - L e, delta = alpha - q', L = -(k_c + |v'/v|);
-    F = e / (b^2 - e^2) with b the bound that the sign of e selects; dW/dt = Gamma_s (S delta^T - K_s W), which the
-    network does. Printed are -W^T S (which turns learning into positive feedback), no rho F, L = -sqrt(1/k_2^2 +
-    1/k_1^2 + k_c^2) |v'/v|, and u tanh(u delta / w) delta in the weight law, Eq. (5.44).
+    The arm is that of Eq. (5.31). M, C, G are taken at (q_d, q_d'). e = q_d - q, alpha = q_d' - L e, delta = alpha -
+    q', L = -(k_c + |v'/v|); F = e / (b^2 - e^2) with b the bound that the sign of e selects; dW/dt = Gamma_s (S delta^T
+    - K_s W), which the network does. Printed are -W^T S (which turns learning into positive feedback), no rho F, L =
+    -sqrt(1/k_2^2 + 1/k_1^2 + k_c^2) |v'/v|, and u tanh(u delta / w) delta in the weight law, Eq. (5.44).
 
     model: nominal. network: None leaves the term out; it sees z = [q / position_scale, q' / velocity_scale].
     bound: upper factor k_2, lower factor k_1 [rad]. convergence: k_c [1/s]. velocity_gain: K_tau [N m s/rad].

@@ -11,7 +11,10 @@ from dexrepro.arrays import Array
 
 
 def facing(quaternion: Array) -> Array:
-    """Orientation that faces ``quaternion``: opposite y and z axes, the same x axis, Eq. (1.14)."""
+    """Orientation that faces ``quaternion``, Q_D of Eq. (1.13): opposite y and z axes, the same x axis, Eq. (1.14).
+
+    In angles about the fixed axes Eq. (1.15), in components Eq. (1.17).
+    """
     q = np.asarray(quaternion, float)
     return np.stack([-q[..., 1], q[..., 0], q[..., 3], -q[..., 2]], axis=-1)
 

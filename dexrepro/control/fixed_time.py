@@ -102,10 +102,10 @@ def settling_bound(
     share: float = 1.0,
     printed: bool = False,
 ) -> float:
-    """T_max [s] of Lemma 3.2 for the error system, which no initial error exceeds.
+    """T_max [s] of Lemma 3.2, Eq. (3.8), for the error system, which no initial error exceeds.
 
-    inertia: largest eigenvalue of M [kg m^2]; share: gamma in (0, 1], how much of the decay is asked for. The
-    constants kappa follow from V' = e1^T e1 / 2 + e2^T M e2 / 2 and Eq. (3.40); ``printed`` takes Eqs. (3.41), (3.42).
+    inertia: largest eigenvalue of M [kg m^2]; share: gamma in (0, 1], how much of the decay is asked for. The constants
+    kappa follow from V' = e1^T e1 / 2 + e2^T M e2 / 2 and Eqs. (3.9), (3.40); ``printed`` takes Eqs. (3.41), (3.42).
     """
     (_, k12, k13), (_, k22, k23), (alpha, beta) = first, second, powers
     low, high = (1.0 + alpha) / 2.0, (1.0 + beta) / 2.0

@@ -75,8 +75,8 @@ class GlobalAdaptiveControl:
     """Backstepping with a barrier on the task error z_1, a network for the unknown dynamics and a robust term.
 
     tau = -K_2 z_2 - J^T P - E Y(Xi) - (1 - E) Upsilon_b, Eq. (4.27) with tau in joint space and J^T P for P^T J, and
-    the virtual velocity alpha = J^+ (x_d' - (K_1 + L) z_1), Eq. (4.20); z_2 = q' - alpha. The network estimates
-    F = -(M alpha' + C alpha + G) and learns from E z_2.
+    the virtual velocity alpha = J^+ (x_d' - (K_1 + L) z_1), Eq. (4.20); z_2 = q' - alpha. The network, Upsilon_a of Eq.
+    (4.28), estimates F = -(M alpha' + C alpha + G) and learns from E z_2.
 
     model: kinematics only. network: None leaves the term out. bound: the prescribed performance. switch: None for
     E = 1. robust: None leaves Upsilon_b out. position_gain: K_1 [1/s], a number or one a task axis. velocity_gain:

@@ -37,6 +37,8 @@ class ConstantScaling:
 class RelativePose:
     """Pose of the follower from the leader's pose relative to the instant at which both were fixed together.
 
+    It is f and g of Eqs. (1.1), (1.2).
+
     leader_to_follower: rotation from the leader's to the follower's base frame, shape (3, 3).
     scaling: s as a function of hand speed [m/s]; dt: sampling time [s].
     incremental: apply s to each sample's displacement; otherwise to the total displacement since the fixing, which is
@@ -65,7 +67,7 @@ class RelativePose:
         self.position = self.follower_start.copy()
 
     def __call__(self, leader_position: Array, leader_rotation: Array) -> tuple[Array, Array]:
-        """Position [m] and rotation matrix of the follower in its base frame, Eq. (1.6), (1.11)."""
+        """Position [m] and rotation matrix of the follower in its base frame, Eq. (1.6), (1.8), (1.9), (1.11)."""
         step = leader_position - self.leader_last
         scale = self.scaling(float(np.sqrt(step @ step)) / self.dt)
         if self.incremental:

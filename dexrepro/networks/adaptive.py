@@ -12,9 +12,10 @@ from dexrepro.networks.basis import Basis
 
 
 class AdaptiveNetwork:
-    """Y(z) = W^T G(z) with the weight law dW/dt = gain G e^T - leakage W, Eq. (4.30), by explicit Euler steps.
+    """Y(z) = W^T G(z), Eq. (4.4), with the weight law dW/dt = gain G e^T - leakage W, Eq. (4.30).
 
-    The weights of nodes to come are reserved and zero, so a new node leaves the output unchanged.
+    Its steps are explicit Euler steps. The weights of nodes to come, W_ex of Eq. (4.11), are reserved and zero, so a
+    new node leaves the output unchanged.
 
     basis: the features G. outputs: length of Y. gain: adaptation gain (Delta, Gamma), a number or one an output.
     leakage: forgetting rate [1/s]; the book's Delta gamma. step: period of :meth:`adapt` [s].

@@ -21,7 +21,7 @@ from .regression import least_squares
 class Blocks(NamedTuple):
     """Parts of the extended feature vector at N phases, Eq. (5.21).
 
-    kernels: Psi (N, n); share: 1 / Gamma = sum phi / (sum phi + sum eta), (N, 1), between 0 and 1;
+    kernels: Psi (N, n); share: 1 / Gamma = sum phi / (sum phi + sum eta), Eq. (5.15), (N, 1), between 0 and 1;
     enhancement: Upsilon (N, m), gamma_j = s eta_j / sum eta.
     """
 
@@ -31,7 +31,10 @@ class Blocks(NamedTuple):
 
     @property
     def change(self) -> Array:
-        """[(1/Gamma - 1) Psi | (1 - 1/Gamma) Upsilon], (N, n + m): what the new weights multiply."""
+        """[(1/Gamma - 1) Psi | (1 - 1/Gamma) Upsilon], (N, n + m): what the new weights multiply.
+
+        The last m columns are lambda_k of Eq. (5.13).
+        """
         return np.concatenate([(self.share - 1) * self.kernels, (1 - self.share) * self.enhancement], axis=1)
 
 
@@ -39,9 +42,9 @@ class Blocks(NamedTuple):
 class ExtendedKernels:
     """Features of an IDMP: those of the old skill, then the changes (1/Gamma - 1) Psi and (1 - 1/Gamma) Upsilon.
 
-    kernels: the n initial kernels; input_weights, biases: W_e (n, m) and beta_e (m,) of the random features
-    eta = sigmoid(phi W_e + beta_e), Eq. (5.11); base: features of the old skill, the kernels themselves unless the old
-    skill is an IDMP already. Weights are stacked alike: [theta; theta_C; theta_U].
+    kernels: the n initial kernels; input_weights, biases: W_e (n, m) and beta_e (m,) of the random features eta =
+    sigmoid(phi W_e + beta_e), Eqs. (5.11), (7.13); base: features of the old skill, the kernels themselves unless the
+    old skill is an IDMP already. Weights are stacked alike: [theta; theta_C; theta_U].
     """
 
     kernels: GaussianKernels
@@ -114,7 +117,7 @@ def extend_styles(
     ridge: float = 0.0,
     update: Literal["exact", "printed_start", "row_wise", "scalar"] = "exact",
 ) -> list[DMP]:
-    """Learn several new skills on shared features from one old skill, by one least-squares problem; Eqs. (5.26)-(5.29).
+    """Learn several new skills on shared features from one old skill, by one least-squares problem; Eqs. (5.25)-(5.29).
 
     The weights of the old skill stay inside the new ones. relearn_old: fit theta_C and theta_U; otherwise theta_U
     alone, which changes the skill gradually as features are added. rest, rcond, ridge: as for ``DMP.fit``. update:
@@ -164,7 +167,7 @@ def lemma_weights(
 
 
 def extend(primitive: DMP, features: ExtendedKernels, demonstration: Demonstration, **options: Unpack[Options]) -> DMP:
-    """Learn one new skill from an old one, Eqs. (5.19)-(5.24); options as for ``extend_styles``."""
+    """Learn one new skill, Eq. (5.10), from an old one, Eqs. (5.19)-(5.24); options as for ``extend_styles``."""
     return extend_styles(primitive, features, [demonstration], **options)[0]
 
 

@@ -78,7 +78,7 @@ class GaussianKernels:
         return np.exp(exponents, out=exponents).swapaxes(-1, -2)
 
     def features(self, phases: Array) -> Array:
-        """psi_i = s phi_i / sum phi, (..., N, n); they sum to s even where every phi underflows."""
+        """psi_i = s phi_i / sum phi, (..., N, n); they sum to s, Eq. (5.7), even where every phi underflows."""
         psi = self.exponents(phases)
         psi -= psi.max(axis=-2, keepdims=True)
         np.exp(psi, out=psi)

@@ -36,7 +36,9 @@ def fit_reaction(
 
 @dataclass(frozen=True)
 class Styles:
-    """Reactions of several styles as a common basis and style parameters: Delta f^k = sum_r lambda_kr B_r, Eq. (7.26).
+    """Reactions of several styles, Eq. (7.25), as a common basis and style parameters.
+
+    Delta f^k = sum_r lambda_kr B_r, Eq. (7.26).
 
     basis (d, N, R), factors lambda (d, R, K): one set a coordinate. spectrum: singular values of the targets, (d, q),
     or (1, q) for factors shared by the coordinates.

@@ -1,7 +1,8 @@
 """An index from the book's equations to the lines that implement or discuss them: "(2.32)" -> code, parameter, erratum.
 
-An equation is mentioned by its number in parentheses, in a docstring, a comment or any other text of the code, or
-in the comment of a configuration; "(5.46) to (5.48)" and "(2.1)-(2.4)" mention all of the range.
+The equations themselves stand in the chapters' ``equations.yaml``. An equation is mentioned by its number in
+parentheses, in a docstring, a comment or any other text of the code, or in the comment of a configuration; "(5.46) to
+(5.48)" and "(2.1)-(2.4)" mention all of the range.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import yaml
+from latex2mathml import converter
 
 from dexrepro import chapters
 from dexrepro.config import config_files
@@ -45,6 +47,21 @@ def index(folder: Path | None = None) -> list[Mention]:
     files = {path: path.stem for kind in ("*.py", "*.yaml") for path in folder.rglob(kind)} if folder else _files()
     found = {mention for path, name in files.items() for mention in _of_file(path, name)}
     return sorted(found, key=lambda m: (*place(m.equation), list(KINDS).index(m.kind), m.path, m.line))
+
+
+def printed() -> dict[str, tuple[str, str]]:
+    """Every equation of the book: its section, and itself in LaTeX, from the ``equations.yaml`` of each chapter."""
+    found: dict[str, tuple[str, str]] = {}
+    for number in chapters.numbers():
+        path = chapters.load(number).folder / "equations.yaml"
+        sections = yaml.safe_load(path.read_text("utf-8")) if path.exists() else {}
+        found |= {name: (section, latex) for section, texts in sections.items() for name, latex in texts.items()}
+    return found
+
+
+def typeset(latex: str) -> str:
+    """An equation as MathML, "" of none."""
+    return converter.convert(latex.replace("{aligned}", "{align*}"), display="block") if latex else ""
 
 
 def numbers(text: str) -> list[str]:

@@ -35,21 +35,24 @@ def build(results: Path) -> Path:
     return results / "report" / "index.html"
 
 
+def templates() -> jinja2.Environment:
+    """What the pages are made of."""
+    loader = jinja2.PackageLoader("dexrepro.report", "templates")
+    made = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    filters = (words.breakable, words.number, words.short_number, words.percent)
+    made.filters |= {function.__name__: function for function in filters}
+    made.globals |= {"VERDICTS": verdicts.VERDICTS, "MARKS": verdicts.MARKS}
+    return made
+
+
 class _Report:
     """Collects what is in results/, copies what the pages show, and renders the pages."""
 
     def __init__(self, results: Path, folder: Path) -> None:
         self.results, self.folder = results, folder
-        loader = jinja2.PackageLoader("dexrepro.report", "templates")
-        self.templates = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
-        self.templates.filters |= {
-            "breakable": words.breakable, "number": words.number, "short_number": words.short_number,
-            "percent": words.percent,
-        }  # fmt: skip
+        self.templates = templates()
         self.templates.globals |= {
             "book": chapters.book(),
-            "VERDICTS": verdicts.VERDICTS,
-            "MARKS": verdicts.MARKS,
             "KINDS": KINDS,
             "engines": crosscheck.verdicts(results),
         }
@@ -145,25 +148,32 @@ class _Report:
     # --------------------------------------------------------------------------------------------------- the equations
 
     def _equations(self, book: Book) -> list[dict[str, Any]]:
-        """For each equation its mentions: ``code``, ``parameter``, and ``named``, the errata and claims."""
+        """Each equation, typeset, with its mentions: ``code``, ``parameter``, and ``named``, the errata and claims."""
         shown = {
             item["id"]: f"chapter{chapter['number']}.html#{item['id']}"
             for chapter in book
             for item in [*chapter["claims"], *chapter["errata"]]
         }
-        rows: dict[str, dict[str, Any]] = {}
-        for mention in equations.index():
+        printed, rows = equations.printed(), dict[str, dict[str, Any]]()
+        mentions = [mention for mention in equations.index() if not printed or mention.equation in printed]
+        for name in sorted({*printed, *(mention.equation for mention in mentions)}, key=equations.place):
+            section, latex = printed.get(name, ("", ""))
+            rows[name] = {"equation": name, "section": section, "typeset": equations.typeset(latex)}
+            rows[name] |= {"code": [], "parameter": [], "named": {}}
+        for mention in mentions:
             link = self.code.link(mention.path, mention.line)
             entry = {**mention._asdict(), **link, "to": shown.get(mention.name, link["to"])}
-            empty = {"equation": mention.equation, "code": [], "parameter": [], "named": {}}
-            row = rows.setdefault(mention.equation, empty)
+            row = rows[mention.equation]
             if mention.kind in ("erratum", "claim"):
                 row["named"].setdefault(mention.name, entry)
             else:
                 row[mention.kind].append(entry)
         for row in rows.values():
             row["named"] = list(row["named"].values())
-            names = ", ".join(dict.fromkeys(m["name"] for m in [*row["code"], *row["named"]])) or "parameters"
+            row["used"] = bool(row["code"] or row["named"] or row["parameter"])
+            names = ", ".join(dict.fromkeys(m["name"] for m in [*row["code"], *row["named"]])) or (
+                "parameters" if row["parameter"] else f"not used, Sect. {row['section']}"
+            )
             to = f"equations.html#eq-{row['equation']}"
             self._searchable("equation", f"Eq. ({row['equation']}): {names}", to, f"{row['equation']} equation")
         return list(rows.values())
@@ -188,12 +198,7 @@ class _Report:
         (experiment,) = contents["experiments"]
         shown = {entry["name"]: entry for chapter in common["chapters"] for entry in chapter["experiments"]}
         if book := shown.get(run["experiment"]):
-            old = {claim["id"]: claim for claim in book["claims"]}
-            pairs = [(old[claim["id"]], claim) for claim in experiment["claims"] if claim["id"] in old]
-            changed = [
-                pair for pair in pairs if len({(c["verdict"], words.short_number(c["margin"])) for c in pair}) > 1
-            ]
-            run["changes"] = sorted(changed, key=lambda pair: pair[0]["verdict"] == pair[1]["verdict"])
+            run["changes"] = verdicts.changes(book["claims"], experiment["claims"])
             if experiment["series"] and book["series"]:
                 explorer.beside(experiment["series"], book["series"])
         self._write_series(experiment["series"])

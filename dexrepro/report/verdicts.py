@@ -6,11 +6,13 @@ it counts as not severely tested, never as tested.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from dexrepro import claims
 from dexrepro.claims import AFTER_CORRECTION, NOT_ATTRIBUTED, NOT_EVALUATED, REPRODUCED, ROBUST
+from dexrepro.report import words
 
 Claim = Mapping[str, Any]
 
@@ -116,6 +118,19 @@ def answer(evaluated: Sequence[Claim]) -> str:
     return f"{first} {missed}." if missed else first
 
 
+def to_name(evaluated: Iterable[Claim], stored: Mapping[str, str]) -> list[str]:
+    """A line for each claim that does not hold, or ends otherwise than is stored, with its margin."""
+    lines = []
+    for claim in evaluated:
+        verdict, was = claim["verdict"], stored.get(claim["id"])
+        changed = was not in (None, verdict)
+        if verdict != NOT_EVALUATED and (changed or verdict == claims.NOT_REPRODUCED):
+            margin = "" if claim["margin"] is None else f", margin {claim['margin']:+.2g}"
+            said = textwrap.shorten(claim["statement"], 90, placeholder=" ...")
+            lines.append(f"{claim['id']}  {verdict}{margin}{f' (stored: {was})' if changed else ''}: {said}")
+    return lines
+
+
 def examples(evaluated: Iterable[Claim]) -> list[Claim]:
     """One worked example of each verdict that occurs: the best documented, then the one decided most clearly."""
 
@@ -129,3 +144,11 @@ def examples(evaluated: Iterable[Claim]) -> list[Claim]:
         if key not in found or merit(claim) > merit(found[key]):
             found[key] = claim
     return [found[verdict] for verdict in VERDICTS if verdict in found]
+
+
+def changes(old: Iterable[Claim], new: Iterable[Claim]) -> list[tuple[Any, Any]]:
+    """Pairs of a claim in two runs that differ in verdict or in two digits of the margin, changed verdicts first."""
+    before = {claim["id"]: claim for claim in old}
+    pairs = [(before[claim["id"]], claim) for claim in new if claim["id"] in before]
+    changed = [pair for pair in pairs if len({(c["verdict"], words.short_number(c["margin"])) for c in pair}) > 1]
+    return sorted(changed, key=lambda pair: pair[0]["verdict"] == pair[1]["verdict"])

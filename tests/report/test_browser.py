@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from urllib.parse import unquote, urlsplit
 
 import numpy as np
 import pytest
 from browser import PROGRAM, Browser, axe
 
+from dexrepro import cli
 from dexrepro.recordings import load_recording
 from dexrepro.report.explorer import _packed
 
@@ -88,6 +90,8 @@ def test_hovering_shows_the_stored_value(explorer: Browser) -> None:
     index = abs(stored.time - instant).argmin()
     assert stored.time[index] == pytest.approx(instant, rel=1e-4)
     assert shown(explorer, "plain") == pytest.approx(stored["x"][index], rel=1e-4)
+    values = "[...document.querySelectorAll('.panel:first-child .u-legend .u-value')].map((node) => node.textContent)"
+    assert all(value.endswith((" m", " s")) for value in explorer.js(values)), "each value with its unit"
 
 
 def test_zooming_one_panel_zooms_all(explorer: Browser) -> None:
@@ -252,3 +256,47 @@ def test_the_front_page_is_light(browser: Browser, report: Path) -> None:
     paths = {url.removeprefix("file://") for url in browser.loaded.values() if url.startswith("file:")}
     assert sum(Path(path).stat().st_size for path in paths) < 500_000
     assert all(path.stat().st_size <= 15_000 for path in report.rglob("*.webp"))
+
+
+def test_two_results_are_compared_on_one_page_without_further_files(browser: Browser, report: Path) -> None:
+    (run,) = Path("results/runs").glob("decay-*")
+    page = report.parent / "beside" / "two.html"
+    assert cli.main(["diff", "results/chapter90/decay", str(run), "--html", str(page)]) == 0
+    browser.open(page)
+    browser.wait("document.querySelectorAll('.panel .u-over').length == 2")
+    assert [url for url in browser.loaded.values() if not url.startswith("data:")] == [page.resolve().as_uri()]
+    headings = browser.js("[...document.querySelectorAll('h2')].map((node) => node.textContent)")
+    assert headings == ["Changed parameters", "Changed verdicts and margins", "Series", "Changed metrics"]
+    assert "start1.00.5" in browser.js("document.querySelector('table').innerText.replace(/\\s/g, '')")
+    assert "not reproduced" in browser.js("document.querySelector('.changes tbody').innerText")
+    browser.js("document.querySelector('.panel .uplot').focus()")
+    browser.key("ArrowRight")
+    assert shown(browser, "B: plain") == pytest.approx(shown(browser, "A: plain") / 2, rel=1e-3)
+    linked = browser.js("[...document.querySelectorAll('.panels a')].map((node) => node.getAttribute('href'))")
+    assert linked
+    assert all((page.parent / path).exists() for path in linked)
+
+
+def test_the_index_shows_the_equation_itself_with_its_lines_and_says_what_is_not_used(
+    browser: Browser, report: Path
+) -> None:
+    browser.open(report / "equations.html", "#eq-90.1")
+    fraction = "document.querySelector('#eq-90\\\\.1 math mfrac').getBoundingClientRect()"
+    assert browser.js(f"{fraction}.height > 1.5 * parseFloat(getComputedStyle(document.body).fontSize)"), (
+        "it is typeset"
+    )
+    assert "E90.01" in browser.js("document.getElementById('eq-90.1').innerText")
+    assert "Not used." in browser.js("document.getElementById('eq-90.2').innerText")
+    browser.js("document.querySelector('#eq-90\\\\.1 a').click()")
+    browser.wait("!location.pathname.endsWith('equations.html') && document.readyState == 'complete'")
+    browser.wait("document.querySelector(':target') != null")
+
+
+def test_the_first_load_of_each_page_is_light(browser: Browser, report: Path) -> None:
+    """What a reader waits for: the page and what it loads before anything is opened."""
+    for name in PAGES:
+        browser.open(report / f"{name}.html")
+        files = {url for url in browser.loaded.values() if url.startswith("file:")}
+        weight = sum(Path(unquote(urlsplit(url).path)).stat().st_size for url in files) / 1000
+        print(f"{name}: {weight:.0f} kB in {len(files)} files")
+        assert weight < 500, name

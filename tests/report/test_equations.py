@@ -88,3 +88,18 @@ def test_an_equation_of_the_book_is_found_in_one_look_up(number: str) -> None:
 
 def test_the_index_covers_the_book() -> None:
     assert len({mention.equation for mention in equations.index()}) >= 275
+
+
+def test_every_equation_of_the_book_is_typeset_and_most_are_cited() -> None:
+    printed, cited = equations.printed(), {m.equation for m in equations.index() if m.equation[1] == "."}
+    assert cited <= set(printed), "no line names an equation that the book has not"
+    chapters = {
+        name: [equations.place(other)[1] for other in printed if other.split(".")[0] == name] for name in "12345678"
+    }
+    assert all(sorted(numbers) == list(range(1, max(numbers) + 1)) for numbers in chapters.values()), "none is left out"
+    assert len(set(printed) - cited) <= 20
+    for name, (section, latex) in printed.items():
+        typeset = equations.typeset(latex)
+        assert section.startswith(name.split(".")[0])
+        assert "\\" not in typeset, f"({name}) has a word that is not typeset"
+        assert "<mi>&</mi>" not in typeset, f"({name}) has a column that is not aligned"

@@ -67,6 +67,12 @@ def test_a_claim_stands_beside_the_figures_it_is_about(claimed: str, figure: str
     assert contents.concerns(claimed, figure) is expected
 
 
+def test_what_another_experiment_shows_stands_beside_a_claim_where_it_was_run(report: Path) -> None:
+    text = (report / "chapter90.html").read_text()
+    assert "Elsewhere it begins at 0.50 m." in text
+    assert "Elsewhere it ends at" not in text, "that experiment needs a package that is not here"
+
+
 def test_a_symbol_leads_to_its_parameter_and_back(report: Path) -> None:
     chapter, index = ((report / name).read_text() for name in ("chapter90.html", "symbols.html"))
     assert '<a href="symbols.html#symbol-90-shared.rate"><i>λ</i><sub>1</sub></a>' in chapter

@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
+from dexrepro.chapters.chapter3.measures import headed
 from dexrepro.chapters.chapter3.scene import ARM, centreline, gripper_arm
 from dexrepro.control.remote_centre import closest_point, tool_axis
-from dexrepro.experiment import Config, Drawing, Recording
+from dexrepro.experiment import AllMetrics, Config, Drawing, Recording
 from dexrepro.report import style
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.rotations import tilt
@@ -26,24 +28,22 @@ def describe(config: Config) -> str:
     return ", ".join(parts)
 
 
-def picture(image: Any, finding: str) -> Drawing:
-    """One rendered view."""
-    figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.7)
-    axes.imshow(style.trimmed({"view": image})["view"])
-    axes.set_axis_off()
-    style.title(figure, finding)
-    return figure
+def by_reading(metrics: AllMetrics, config: Config) -> pd.DataFrame:
+    """One row a case: what it is in a few words, and all its metrics."""
+    rows = [
+        {"case": case, "reading": describe(config.cases[case]), **values}
+        for case, values in metrics.items()
+        if case in config.cases
+    ]
+    return headed(rows)
 
 
 def pictures(images: dict[str, Any], finding: str) -> Drawing:
     """Rendered views side by side, each with its label."""
     figure, grid = style.subplots(1, len(images), height=2.9)
     for axes, (label, image) in zip(grid, style.trimmed(images).items()):
-        axes.imshow(image)
-        axes.set_axis_off()
-        axes.set_title(label)
-    style.title(figure, finding)
-    return figure
+        style.photo(axes, image, label)
+    return style.title(figure, finding)
 
 
 def steps(recording: Recording, config: Config) -> Drawing:
@@ -58,11 +58,8 @@ def steps(recording: Recording, config: Config) -> Drawing:
     figure, grid = style.subplots(1, 4, height=2.3)
     shown = style.trimmed(recording.images)
     for axes, (name, label) in zip(grid, labels.items()):
-        axes.imshow(shown[name])
-        axes.set_axis_off()
-        axes.set_title(label)
-    style.title(figure, "The gripper enters through the opening and reaches the cube")
-    return figure
+        style.photo(axes, shown[name], label)
+    return style.title(figure, "The gripper enters through the opening and reaches the cube")
 
 
 def orientation(recording: Recording, config: Config) -> Drawing:
@@ -95,8 +92,7 @@ def orientation(recording: Recording, config: Config) -> Drawing:
     axes.set(xlabel="Along the desired axis [mm]", ylabel="Across it [mm]", aspect="equal")
     axes.margins(0.2, 0.45)
     figure.legend(loc="outside lower center", ncols=2)
-    style.title(figure, f"Half-way to the opening {np.degrees(angle):.0f}° of the turn remain")
-    return figure
+    return style.title(figure, f"Half-way to the opening {np.degrees(angle):.0f}° of the turn remain")
 
 
 def shortest_distance(recording: Recording, config: Config) -> Drawing:
@@ -114,8 +110,7 @@ def shortest_distance(recording: Recording, config: Config) -> Drawing:
     axes.text(*(corners[1] + corners[2]) / 2, "  tool", fontsize=7, color=style.BOOK)
     _mark(style, axes, {"elbow": corners[0], "$P_{EA}$": corners[1], "$P_E$": corners[2], "$P_R$": centre})
     distance = 1e3 * float(np.linalg.norm(centre - foot))
-    style.title(figure, f"With a free tool axis the arm passes {distance:.0f} mm beside the centre")
-    return figure
+    return style.title(figure, f"With a free tool axis the arm passes {distance:.0f} mm beside the centre")
 
 
 def _space(style: Any) -> tuple[Any, Any]:

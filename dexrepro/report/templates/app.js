@@ -70,7 +70,7 @@ for (const link of document.querySelectorAll("a.enlarge")) {
     dialog.showModal();
   });
 }
-dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });
+dialog?.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });
 
 // ---- films run while they are in view, unless the reader asked for less motion or pressed Pause
 
@@ -139,8 +139,9 @@ for (const place of document.querySelectorAll(".explorer")) {
   place.addEventListener("toggle", async () => {
     if (!place.open || place.dataset.ready) return;
     place.dataset.ready = "yes";
-    document.head.append(make("link", { rel: "stylesheet", href: "vendor/uplot/uPlot.min.css" }));
-    await load("vendor/uplot/uPlot.iife.min.js");
+    const drawing = "vendor/uplot/uPlot.iife.min.js";
+    if (!loading.has(drawing)) document.head.append(make("link", { rel: "stylesheet", href: "vendor/uplot/uPlot.min.css" }));
+    await load(drawing);
     await load("explorer.js");
     await load(`files/${place.dataset.experiment}/series.js`);
     const recorded = RECORDED[place.dataset.experiment];

@@ -60,8 +60,7 @@ def _draw_arms(recording: Recording, config: Config) -> Drawing:
     axes[0].set_ylabel("y [m]")
     axes[0].annotate("DFR", (-0.05, -0.03), fontsize=7, color=style.EXTRA[0], ha="right")
     axes[0].annotate("AFR", (0.56, -0.03), fontsize=7, color=style.BOOK)
-    style.title(figure, "The follower (blue) keeps squeezing the object while its partner (green) moves right")
-    return figure
+    return style.title(figure, "The follower (blue) keeps squeezing the object while its partner (green) moves right")
 
 
 def _draw_errors(recordings: Recordings, metrics: Any) -> Drawing:
@@ -98,10 +97,11 @@ def _draw_errors(recordings: Recordings, metrics: Any) -> Drawing:
         < min(metrics[f"{case}_{law}"]["rmse"] for law in ROLES if law != "proposed")
         for case in CASES
     )
-    style.title(figure, f"The proposed law keeps the smallest force error in {best} of {len(CASES)} cases")
-    return figure
+    return style.title(figure, f"The proposed law keeps the smallest force error in {best} of {len(CASES)} cases")
 
 
+LAWS = ("proposed", "integral", "force", "passive", "proposed_tuned", "force_tuned", "passive_tuned", "printed",
+        "printed_inverse")  # fmt: skip
 COLUMNS = {
     "rmse": "RMSE [N]",
     "rmse_late": f"RMSE after {LATE:g} s [N]",
@@ -111,9 +111,8 @@ COLUMNS = {
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    laws = dict.fromkeys(case.partition("_")[2] for case in metrics if case[:2] in CASES)
     rows = []
-    for law in laws:
+    for law in (law for law in LAWS if any(f"{case}_{law}" in metrics for case in CASES)):
         row: dict[str, Any] = {"law": law.replace("_", " ")}
         for case in CASES:
             values = metrics.get(f"{case}_{law}", {})

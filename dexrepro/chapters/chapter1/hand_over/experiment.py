@@ -13,36 +13,27 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
-from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, TABLE
+from dexrepro.chapters.chapter1.pair import ALONG, BALL, FLIP, LEVEL, TABLE, add_arms, servos
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.operator import strides
 from dexrepro.measures import rms
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.sensor import Sensor
-from dexrepro.physics.servo import PoseServo
 from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
-from dexrepro.robots.baxter import baxter, posture
-from dexrepro.robots.inverse_kinematics import nearest
 
 RATE = 100.0
 ARRIVED = 2.5  # s, DFR has reached the object
-ALONG = np.array([0.0, 1.0, 0.0])
 
 
 def scene(config: Config, rng: Rng | None = None) -> World:
     """A soft ball on a stand between the two arms."""
     world = World(step=config.step, perturbation=config.perturbation)
-    place, ready = np.array(config.place), config.radius + 0.10
-    for name, side in SIDES.items():
-        arm = baxter(side)
-        offset = -config.leader_distance if name == "leader" else ready
-        start = nearest(arm, posture(side), place + offset * ALONG, LEVEL if name == "leader" else LEVEL @ FLIP)
-        noise = rng("force sensor") if rng and name == "follower" else None
-        world.add_arm(
-            name, arm, start, sensor=Sensor(force_noise=config.sensor_noise) if noise else Sensor(), rng=noise
-        )
+    place = np.array(config.place)
+    away = {"leader": -config.leader_distance, "follower": config.radius + 0.10}
+    places = {name: place + offset * ALONG for name, offset in away.items()}
+    add_arms(world, places, Sensor(force_noise=config.sensor_noise), rng)
     world.add_sphere("object", config.radius, config.place, mass=config.mass, colour=BALL, angularDamping=0.2)
     world.add_box("stand", (0.2, 0.2, 0.02), place - [0.0, 0.0, config.radius + 0.01], friction=1.0, colour=TABLE)
     return world
@@ -55,10 +46,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     reach = config.leader_distance - config.radius + config.touch
     path = np.array(config.place) + (reach * share - config.leader_distance)[:, None] * ALONG
     with scene(config, rng) as world:
-        arms = {
-            name: PoseServo(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()
-        }
-        arms["leader"].reset(np.array(world.arm("leader").q))
+        arms = servos(world, config)
         own = AssistiveFollower(
             arms["follower"], config.field, ContactLatch(**config.latch), config.law, speed_limit=config.speed_limit
         )

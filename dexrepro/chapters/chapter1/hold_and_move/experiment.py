@@ -17,6 +17,7 @@ from scipy import signal
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.hold_and_move.claims import PRINTED
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
+from dexrepro.chapters.chapter1.pair import ALONG, BALL, FLIP, SIDES, TABLE, add_arms, joint_channels, servos
 from dexrepro.control.facing import facing
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import angle_between, last_outside, rms
@@ -25,21 +26,14 @@ from dexrepro.physics.elements import TipForce
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
-from dexrepro.physics.servo import PoseServo
 from dexrepro.physics.soft_object import Cushion, SoftObject
 from dexrepro.physics.world import World
-from dexrepro.robots.baxter import baxter, posture
-from dexrepro.robots.inverse_kinematics import nearest
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.rotations import quaternion_from_rotation, rotation_from_quaternion
 
 RATE = 50.0
 HELD = ("rmse_measured", "overshoot", "twist", "turned", "pointing", "lag", "slip")  # undefined once it has fallen
-SIDES = {"leader": "right", "follower": "left"}
-LEVEL = np.stack([(0.0, 0.0, -1.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)], axis=1)  # R_D while the line is level
 VIEW = Camera(target=(0.5, 0.0, 0.3), distance=1.45, yaw=75.0, pitch=-18.0)
-BALL, TABLE = (0.35, 0.65, 0.85, 1.0), (0.85, 0.82, 0.78, 1.0)
-FLIP = np.diag([1.0, -1.0, -1.0])
 
 
 def middle(config: Config) -> Any:
@@ -50,24 +44,14 @@ def middle(config: Config) -> Any:
 def scene(config: Config, rng: Rng | None = None) -> World:
     """Two arms that just touch an object on a table."""
     world = World(step=config.step, perturbation=config.perturbation)
-    half = 0.5 * config.object.length * np.array([0.0, 1.0, 0.0])
-    for name, side in SIDES.items():
-        arm = baxter(side)
-        place, rotation = (middle(config) - half, LEVEL) if name == "leader" else (middle(config) + half, LEVEL @ FLIP)
-        sensor = Sensor(force_noise=config.sensor.noise, force_delay=config.sensor.delay * config.control_period)
-        start = nearest(arm, posture(side), place, rotation)
-        noise = rng("force sensor") if rng and name == "follower" else None
-        world.add_arm(name, arm, start, sensor=sensor if noise else Sensor(), rng=noise)
+    half = 0.5 * config.object.length * ALONG
+    sensor = Sensor(force_noise=config.sensor.noise, force_delay=config.sensor.delay * config.control_period)
+    add_arms(world, {"leader": middle(config) - half, "follower": middle(config) + half}, sensor, rng)
     radius = config.object.radius
     world.add_sphere("object", radius, middle(config), mass=config.object.mass, colour=BALL, angularDamping=0.2)
     x, y, z = middle(config)
     world.add_box("table", (0.5, 1.2, 0.04), (x + 0.05, y, z - radius - 0.02), colour=TABLE)
     return world
-
-
-def joint_channels(joints: Any) -> dict[str, Any]:
-    """Joint angles (n, 14) [rad] of both arms as the channels of the World."""
-    return {f"{name}.position": joints[:, 7 * k : 7 * (k + 1)] for k, name in enumerate(SIDES)}
 
 
 def stage(world: World, recording: Recording, config: Config) -> Recording:
@@ -80,14 +64,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     law = HoldingDrive(config.law, config.speed_limit * dt)
     images: dict[str, Any] = {}
     with scene(config, rng) as world:
-        followers = {
-            name: PoseServo(plant.arm, np.array(plant.q), dt=dt, mass_error=config.arm.mass_error,
-                           gain=config.arm.gain, singular=config.arm.singular, posture=config.arm.posture,
-                           bandwidth=config.arm.bandwidth)
-            for name, plant in world.arms.items()
-        }  # fmt: skip
-        for name, plant in world.arms.items():
-            followers[name].reset(np.array(plant.q))
+        followers = servos(world, config)
         start = world.arm("leader").sense.tip
         path = hold_path(config, start, rng(f"trajectory {config.trajectory}"))
         rotations = path.rotation

@@ -16,16 +16,13 @@ import pandas as pd
 from scipy.spatial.transform import Rotation
 
 from dexrepro.arrays import Rng
-from dexrepro.chapters.chapter1.hold_and_move.experiment import BALL, FLIP, LEVEL, SIDES, joint_channels
+from dexrepro.chapters.chapter1.pair import ALONG, BALL, LEVEL, SIDES, add_arms, joint_channels, servos
 from dexrepro.control.facing import facing
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.humans.operator import strides
 from dexrepro.measures import angle_between, rms
 from dexrepro.physics.rendering import Camera
-from dexrepro.physics.servo import PoseServo
 from dexrepro.physics.world import World
-from dexrepro.robots.baxter import baxter, posture
-from dexrepro.robots.inverse_kinematics import nearest
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.rotations import quaternion_from_rotation, rotation_from_quaternion
 
@@ -56,12 +53,8 @@ class Object:
 def scene(config: Config) -> World:
     """Two arms and the ball, AFR at the ready position."""
     world = World(step=config.step, perturbation=config.perturbation)
-    centre, along = np.array(config.place), np.array([0.0, 1.0, 0.0])
-    starts = {"leader": (centre - config.leader_distance * along, LEVEL),
-              "follower": (centre + config.start_offset * along, LEVEL @ FLIP)}  # fmt: skip
-    for name, side in SIDES.items():
-        arm = baxter(side)
-        world.add_arm(name, arm, nearest(arm, posture(side), *starts[name]))
+    away = {"leader": -config.leader_distance, "follower": config.start_offset}
+    add_arms(world, {name: np.array(config.place) + offset * ALONG for name, offset in away.items()})
     world.add_sphere("object", config.radius, config.place, colour=BALL)
     return world
 
@@ -82,10 +75,9 @@ def script(config: Config) -> dict[str, Any]:
         shake[inside, axis] = config.shake[k] * np.sin(2 * np.pi * t[inside] / 6.0)
     done = np.clip((t - SHAKEN) / (APPROACH - SHAKEN), 0, 1)
     share = np.interp(done, np.linspace(0, 1, 501), np.r_[0.0, strides(500)])
-    along = np.array([0.0, 1.0, 0.0])
     distance = config.leader_distance + (config.radius - config.leader_distance) * share
     rest = np.array(config.place)
-    position = rest - distance[:, None] * along
+    position = rest - distance[:, None] * ALONG
     yaw = np.deg2rad(config.yaw) * np.sin(2 * np.pi * np.maximum(t - HOLD, 0) / 8.0)
     pitch = np.deg2rad(config.pitch) * np.sin(2 * np.pi * np.maximum(t - PITCHED, 0) / 8.0)
     turns = Rotation.from_euler("zx", np.stack([yaw, pitch], axis=1)).as_matrix()
@@ -112,11 +104,7 @@ def simulate(config: Config, rng: Rng) -> Recording:
     axes = plan["rotation"][:, :, 2]
     images: dict[str, Any] = {}
     with scene(config) as world:
-        followers = {
-            name: PoseServo(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()
-        }
-        for name, plant in world.arms.items():
-            followers[name].reset(np.array(plant.q))
+        followers = servos(world, config)
         world.add(Object(world.bodies["object"], plan["centre"], dt))
         field.reset(world.arm("follower").sense.tip)
 

@@ -14,7 +14,7 @@ import pandas as pd
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter1.assistive import AssistiveFollower
-from dexrepro.chapters.chapter1.hold_and_move.experiment import FLIP, LEVEL, SIDES, TABLE
+from dexrepro.chapters.chapter1.pair import ALONG, FLIP, LEVEL, TABLE, add_arms, servos
 from dexrepro.control.hand_over import ContactLatch
 from dexrepro.control.potential_field import PotentialField
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
@@ -23,31 +23,23 @@ from dexrepro.measures import binomial_interval, rms
 from dexrepro.physics.plant import Sense
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.sensor import Sensor
-from dexrepro.physics.servo import PoseServo
 from dexrepro.physics.world import World
-from dexrepro.robots.baxter import baxter, palm, posture
-from dexrepro.robots.inverse_kinematics import nearest
+from dexrepro.robots.baxter import palm
 
 RATE = 100.0
 SIZES = ("small", "medium", "large")
 VIEW = Camera(target=(0.5, -0.05, 0.22), distance=1.25, yaw=75.0, pitch=-22.0)
 GRIPPED, LIFTED, CARRIED, RELEASED = 4.5, 6.0, 9.0, 9.6  # s
 BIN = (0.62, 0.2)  # m, centre
-ALONG = np.array([0.0, 1.0, 0.0])
 
 
 def scene(config: Config, rng: Rng | None = None, offset: Any = (0.0, 0.0, 0.0)) -> World:
     """Two arms with palms, a box on a stand and a bin; ``offset``: x, y [m] and yaw [rad] of the box."""
     world = World(step=config.step, perturbation=config.perturbation)
     place = np.array(config.place)
-    for name, side in SIDES.items():
-        arm = baxter(side, tool=palm())
-        away = (-1 if name == "leader" else 1) * (0.5 * config.width + config.stand_off)
-        rotation = LEVEL if name == "leader" else LEVEL @ FLIP
-        start = nearest(arm, posture(side), place + away * ALONG, rotation)
-        noise = rng("force sensor") if rng and name == "follower" else None
-        sensor = Sensor(force_noise=config.sensor_noise) if noise else Sensor()
-        world.add_arm(name, arm, start, contacts=True, sensor=sensor, rng=noise)
+    away = (0.5 * config.width + config.stand_off) * ALONG
+    places = {"leader": place - away, "follower": place + away}
+    add_arms(world, places, Sensor(force_noise=config.sensor_noise), rng, palm())
     sides = sorted({0.12, 0.20, 0.30} - {config.width})
     size = (sides[1], config.width, sides[0])
     centre = place + [offset[0], offset[1], 0.0]
@@ -126,10 +118,7 @@ def _carry(config: Config, rng: Rng, offset: Any, pictures: dict[str, Any] | Non
     dt = config.control_period
     path, opening = leading(config)
     with scene(config, rng, offset) as world:
-        arms = {
-            name: PoseServo(plant.arm, np.array(plant.q), dt=dt, **config.arm) for name, plant in world.arms.items()
-        }
-        arms["leader"].reset(np.array(world.arm("leader").q))
+        arms = servos(world, config)
         own = AssistiveFollower(
             arms["follower"], field_of(config), ContactLatch(**config.latch), config.law, speed_limit=config.speed_limit
         )

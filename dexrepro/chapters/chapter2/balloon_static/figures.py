@@ -44,8 +44,7 @@ def _off(config: Config, case: str) -> str:
 
 def _draw_setup(recordings: Recordings, config: Config) -> Drawing:
     figure, (photo, front) = style.subplots(1, 2, height=2.7, width_ratios=(1.3, 1))
-    photo.imshow(next(iter(recordings.values())).images["contact"])
-    photo.axis("off")
+    style.photo(photo, next(iter(recordings.values())).images["contact"])
     style.panel(photo, "a", "simulated Baxter at the instant of contact")
     leader = next(iter(recordings.values()))["leader.tip"][0]
     front.plot(1e3 * leader[0], 1e3 * leader[2], "s", color=style.PLAIN, label="partner (right arm)")
@@ -56,8 +55,9 @@ def _draw_setup(recordings: Recordings, config: Config) -> Drawing:
     front.set(xlabel="x [mm]", ylabel="z [mm]", aspect="equal", xlim=(600, 820), ylim=(210, 400))
     front.legend(loc="upper left")
     style.panel(front, "b", "grippers at the start, seen along y")
-    style.title(figure, "Two arms, one balloon, and a follower that starts off the holding line (synthetic operator)")
-    return figure
+    return style.title(
+        figure, "Two arms, one balloon, and a follower that starts off the holding line (synthetic operator)"
+    )
 
 
 def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -83,5 +83,6 @@ def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
     grid[1, 1].legend(ncols=3, loc="center right")
     ends = np.ptp([run["follower.tip"][-1] for run in recordings.values()], axis=0)
     spread = 1e3 * np.linalg.norm(ends)
-    style.title(figure, f"From both starts the follower ends at one place, within {spread:.1f} mm (simulated Baxter)")
-    return figure
+    return style.title(
+        figure, f"From both starts the follower ends at one place, within {spread:.1f} mm (simulated Baxter)"
+    )

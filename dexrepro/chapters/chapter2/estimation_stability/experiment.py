@@ -38,7 +38,10 @@ def _growing_regressor(config: Config) -> Recording:
 
 
 def _lyapunov(config: Config) -> Recording:
-    """Constant parameters: the true rest position is a polynomial; the follower wanders."""
+    """Constant parameters: the true rest position is a polynomial; the follower wanders.
+
+    The exact change of V in a step is that of Eqs. (2.20), (2.21) and what the square of an explicit step adds.
+    """
     rates, truth = config.rates, (config.stiffness, *(config.stiffness * a for a in config.true_coefficients))
     law = _estimation(config, rates=rates)
 

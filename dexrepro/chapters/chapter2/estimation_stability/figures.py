@@ -19,7 +19,7 @@ FIGURES = {
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    growing = [case for case in recordings if case.startswith("rate")]
+    growing = [case for case in recordings if config.cases[case].study == config.study]
     if not growing or "lyapunov" not in recordings:
         return {}
     figure, (left, right) = style.subplots(1, 2, height=2.6)

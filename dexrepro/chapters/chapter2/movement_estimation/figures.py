@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings, changed
 from dexrepro.report import style
 
 FIGURES = {
@@ -23,13 +23,16 @@ FIGURES = {
         "The estimated rest position follows the true one up to a constant offset of about 5 mm.",
     ),
 }
+UNITS = {"reference": "m", "rest_position": "m"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
-    if stiffnesses := [case for case in recordings if case.startswith("k")]:
+    plain = [case for case in recordings if changed(config.cases[case], config) <= {"stiffness", "period"}]
+    periods = [case for case in plain if config.cases[case].period in np.atleast_1d(config.period)]
+    if stiffnesses := [case for case in plain if case not in periods]:
         figures["2.6"] = _draw_forces(stiffnesses, recordings, metrics, config)
-    if periods := [case for case in recordings if case.startswith("sigma")]:
+    if periods:
         figures["2.7"] = _draw_estimates(periods, recordings, metrics, config)
     return figures
 
@@ -48,8 +51,9 @@ def _draw_forces(cases: list[str], recordings: Recordings, metrics: Any, config:
     axes.set(xlabel="Time [s]", ylabel="Contact force $f_x$ [N]")
     axes.legend(loc="center right")
     slowest = max(metrics[case]["settling_time"] for case in cases)
-    style.title(figure, f"The force is within 5 % of the desired one after {slowest:.2f} s, whatever the stiffness")
-    return figure
+    return style.title(
+        figure, f"The force is within 5 % of the desired one after {slowest:.2f} s, whatever the stiffness"
+    )
 
 
 def _draw_estimates(cases: list[str], recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -59,7 +63,10 @@ def _draw_estimates(cases: list[str], recordings: Recordings, metrics: Any, conf
         offset = parameters.desired_force * (1 / recording["estimate"][:, 1] - 1 / parameters.stiffness)
         column[0].plot(recording.time, recording["estimate"][:, 0], label="estimate", **style.LINES["book"])
         column[0].plot(recording.time, recording["rest_position"], label="true", **style.LINES["reference"])
-        variants = {"window": (recording, "book"), "printed time": (recordings.get(f"printed{case[5:]}"), "printed")}
+        variants = {
+            "window": (recording, "book"),
+            "printed time": (recordings.get(f"printed{parameters.period:g}"), "printed"),
+        }
         for label, (run, line) in variants.items():
             if run is not None:
                 difference = 1e3 * (run["estimate"][:, 0] - run["rest_position"])
@@ -77,5 +84,4 @@ def _draw_estimates(cases: list[str], recordings: Recordings, metrics: Any, conf
         1e3 * metrics[case]["estimation_error"] for case in cases if metrics[case]["estimation_error"] is not None
     ]
     found = f" but for the {np.mean(offsets):.1f} mm that the wrong stiffness explains" if offsets else ""
-    style.title(figure, f"The estimate follows the partner{found}")
-    return figure
+    return style.title(figure, f"The estimate follows the partner{found}")

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.chapters.chapter3 import drawings
-from dexrepro.chapters.chapter3.measures import COLUMNS, headed
+from dexrepro.chapters.chapter3.measures import COLUMNS
 from dexrepro.chapters.chapter3.scene import FILMED
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 from dexrepro.report import style
@@ -70,7 +70,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
             figures[f"3.{6 + n}"] = _draw_reach(n, recordings, metrics, config)
     first = recordings.get("reach1")
     if first is not None and first.images:
-        figures["3.4"] = drawings.picture(first.images["start"], "A box entered through its lid")
+        figures["3.4"] = style.picture(first.images["start"], "A box entered through its lid", 2.7)
         figures["3.6"] = drawings.steps(first, config.cases["reach1"])
     if first is not None:
         figures["3.2"] = drawings.orientation(first, config.cases["reach1"])
@@ -104,17 +104,13 @@ def _draw_reach(n: int, recordings: Recordings, metrics: Any, config: Config) ->
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     found = metrics[f"reach{n}"]
     final, far = 1e6 * found["final_position_error"], 1e3 * found["rcm_distance_max"]
-    style.title(figure, f"Reach {n} ends {final:.0f} µm from its target and stays within {far:.2f} mm of the centre")
-    return figure
+    return style.title(
+        figure, f"Reach {n} ends {final:.0f} µm from its target and stays within {far:.2f} mm of the centre"
+    )
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    rows = [
-        {"case": case, "reading": drawings.describe(config.cases[case]), **values}
-        for case, values in metrics.items()
-        if case in config.cases
-    ]
-    return {"T3.A": headed(rows), "T3.S": _sensitivity(metrics)}
+    return {"T3.A": drawings.by_reading(metrics, config), "T3.S": _sensitivity(metrics)}
 
 
 # Variant, what differs, claim, metric, bound that the claim puts on it [m] and the case it departs from.

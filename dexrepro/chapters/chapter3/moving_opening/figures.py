@@ -7,7 +7,6 @@ from typing import Any
 import pandas as pd
 
 from dexrepro.chapters.chapter3 import drawings
-from dexrepro.chapters.chapter3.measures import headed
 from dexrepro.chapters.chapter3.scene import FILMED
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Metrics, Recording, Recordings
 from dexrepro.report import style
@@ -43,7 +42,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if run is None:
         return figures
     if run.images:
-        figures["3.13"] = drawings.picture(run.images["begin"], "0 s: the arm stands in the opening")
+        figures["3.13"] = style.picture(run.images["begin"], "0 s: the arm stands in the opening", 2.7)
         pair = {"1.25 s: the opening is aside": run.images["quarter"], "10 s: it has come back": run.images["end"]}
         figures["3.14"] = drawings.pictures(pair, "The arm has followed the opening")
     figures["3.15"] = _draw_path(run, metrics["track"], config.cases["track"])
@@ -64,8 +63,7 @@ def _draw_path(run: Recording, found: Metrics, config: Config) -> Drawing:
     style.phase(right, config.motion.start, config.motion.start + config.motion.period, "moving")
     right.set(xlabel="Time [s]", ylabel="Shift of $P_R$ [mm]", ylim=(-60, 75))
     speed = 1e3 * found["centre_speed_max"]  # type: ignore[operator]
-    style.title(figure, f"The opening moves at up to {speed:.0f} mm/s")
-    return figure
+    return style.title(figure, f"The opening moves at up to {speed:.0f} mm/s")
 
 
 CURVES = {
@@ -92,14 +90,10 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=4)
     found = metrics["track"]
     far, tip = 1e3 * found["moving_distance_max"], 1e3 * found["moving_error_max"]
-    style.title(figure, f"The arm follows the opening within {far:.1f} mm while its end point errs by {tip:.1f} mm")
-    return figure
+    return style.title(
+        figure, f"The arm follows the opening within {far:.1f} mm while its end point errs by {tip:.1f} mm"
+    )
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    rows = [
-        {"case": case, "reading": drawings.describe(config.cases[case]), **values}
-        for case, values in metrics.items()
-        if case in config.cases
-    ]
-    return {"T3.D": headed(rows)}
+    return {"T3.D": drawings.by_reading(metrics, config)}

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter5 import pen
-from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings, changed
 from dexrepro.report import style
 from dexrepro.report.tables import by_case
 from dexrepro.robots.pen_arm import pen_arm_tip
@@ -46,11 +46,13 @@ FILM = Film(
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
-    written = [case for case in recordings if case.startswith("letter_")]
+    written = [case for case in recordings if changed(config.cases[case], config) <= {"hand.letter"}]
     if written:
-        figures["5.5b"] = _draw_letters(written, recordings, metrics)
+        figures["5.5b"] = _draw_letters(written, recordings, metrics, config)
     if "letter_a" in recordings:
-        figures["5.4"] = _draw_picture(recordings["letter_a"])
+        figures["5.4"] = style.picture(
+            recordings["letter_a"].images["picture"], "The simulated arm has written the letter a", 2.4
+        )
     if set(SHOWN) <= set(recordings):
         figures["5.D"] = _draw_errors(recordings, metrics, config)
     return figures
@@ -64,7 +66,7 @@ SHOWN = {
 }
 
 
-def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics) -> Drawing:
+def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     figure, axes = style.subplots(1, len(cases), height=2.0, sharex=True, sharey=True, squeeze=False)
     for panel, case in zip(axes[0], cases):
         drawn = pen.from_paper(recordings[case]["arm.tip"])
@@ -72,22 +74,13 @@ def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics)
         panel.plot(*drawn.T, **style.LINES["book"])
         panel.plot(*told.T, **style.LINES["reference"])
         panel.set(aspect="equal", xlabel="x [cm]")
-        panel.set_title(f"{case[-1]}: {1e3 * metrics[case]['tip_rms']:.0f} µm")  # type: ignore[operator]
+        panel.set_title(f"{config.cases[case].hand.letter}: {1e3 * metrics[case]['tip_rms']:.0f} µm")  # type: ignore[operator]
     axes[0, 0].set_ylabel("y [cm]")
     worst = max(metrics[case]["tip_rms"] for case in cases)  # type: ignore[type-var]
-    style.title(
+    return style.title(
         figure,
         f"After 1 s the arm writes every letter within {style.at_most(worst or 0.0, 2)} mm (RMS of the pen's point)",
     )
-    return figure
-
-
-def _draw_picture(recording: Recording) -> Drawing:
-    figure, axes = style.plt.subplots(figsize=(style.ONE_COLUMN, 2.4))
-    axes.imshow(style.trimmed({"a": recording.images["picture"]})["a"])
-    axes.set_axis_off()
-    style.title(figure, "The simulated arm has written the letter a")
-    return figure
 
 
 def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -122,12 +115,11 @@ def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) ->
     style.legend_below(figure, {name: {"color": style.REFERENCE, "linestyle": line} for name, line in joints.items()})
     law, rival, printed = (metrics[case]["bound_use"] or 0.0 for case in ("letter_w", "pd_tuned", "printed_sign"))
     both = style.at_most(100 * max(law, rival), 0)
-    style.title(
+    return style.title(
         figure,
         f"Corrected law and tuned PD use at most {both} % of the bound, their initial error; "
         f"with the printed sign of the network it is {100 * printed:.0f} %",
     )
-    return figure
 
 
 LAWS = (

@@ -42,11 +42,8 @@ FILM = Film(
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     figures = {}
     if {"film2", "film3"} <= set(recordings):
-        figure, axes = style.plt.subplots(1, 1, figsize=(style.ONE_COLUMN, 2.5))
-        axes.imshow(style.trimmed({"start": recordings["film3"].images["at0"]})["start"])
-        axes.set_axis_off()
-        style.title(figure, "The arm, three cubes with their lip, and nine goals")
-        figures["5.7"] = figure
+        start = recordings["film3"].images["at0"]
+        figures["5.7"] = style.picture(start, "The arm, three cubes with their lip, and nine goals")
         figures["5.9"] = _filmstrip(recordings, config)
     if set(crossings(config).values()) <= set(recordings):
         figures["5.F"] = _draw_runs(recordings, metrics, config)
@@ -59,11 +56,8 @@ def _filmstrip(recordings: Recordings, config: Config) -> Drawing:
     pictures = style.trimmed({(case, k): recordings[case].images[f"at{k}"] for case, k in film})
     for row, case in zip(grid, dict.fromkeys(case for case, _ in film)):
         for k, (axes, time) in enumerate(zip(row, config.film)):
-            axes.imshow(pictures[case, k])
-            axes.set_axis_off()
-            axes.set_title(f"{config.cases[case].blocks} blocks, {time:g} s")
-    style.title(figure, "The arm carries its pen over two and three blocks")
-    return figure
+            style.photo(axes, pictures[case, k], f"{config.cases[case].blocks} blocks, {time:g} s")
+    return style.title(figure, "The arm carries its pen over two and three blocks")
 
 
 def _draw_runs(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -86,8 +80,7 @@ def _draw_runs(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
     right.legend()
     runs = [metrics[case] for case in cases.values()]
     good = sum((values["bound_use"] or 2.0) < 1 and (values["clearance"] or -1.0) > 0 for values in runs)
-    style.title(figure, f"{good} of {len(runs)} crossings stay inside the bound and clear of the obstacle")
-    return figure
+    return style.title(figure, f"{good} of {len(runs)} crossings stay inside the bound and clear of the obstacle")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:

@@ -77,8 +77,9 @@ def _draw_scene(original: Recording, constrained: Recording, metrics: AllMetrics
     axes.set(xlim=(0, image.shape[1]), ylim=(image.shape[0], 0))
     axes.axis("off")
     before, after = (f"{100 * (metrics[case]['distance_new'] or 0.0):.1f}" for case in ("original", "constrained"))
-    style.title(figure, f"From arm to new box: {before} cm on the learned path, {after} cm on the constrained one")
-    return figure
+    return style.title(
+        figure, f"From arm to new box: {before} cm on the learned path, {after} cm on the constrained one"
+    )
 
 
 def _pixels(points: Array, shape: tuple[int, ...]) -> Array:
@@ -94,8 +95,7 @@ def _draw_run(run: Recording, numbers: Metrics) -> Drawing:
     grid = figure.add_gridspec(2, len(shots), height_ratios=[1.1, 1.3])
     for i, (name, image) in enumerate(shots.items()):
         axes = figure.add_subplot(grid[0, i])
-        axes.imshow(image)
-        axes.axis("off")
+        style.photo(axes, image)
         style.panel(axes, "abcdef"[i], f"{name.partition('_')[2]} s")
     axes = figure.add_subplot(grid[1, :])
     for name, line in zip(BOXES, ("extra1", "extra2", "book")):
@@ -110,5 +110,4 @@ def _draw_run(run: Recording, numbers: Metrics) -> Drawing:
     else:
         least = style.at_least(min(closest.values()), 1)
         text = f"On the constrained path the whole arm clears the boxes by {least} cm or more"
-    style.title(figure, text)
-    return figure
+    return style.title(figure, text)

@@ -48,9 +48,9 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     for row, (case, run) in enumerate(runs.items()):
         for i, name in enumerate(sorted(run.images)):
             axes = figure.add_subplot(grid[row, i])
-            axes.imshow(pictures[case, name])
-            axes.axis("off")
-            axes.set_title(f"{case + ', ' if i == 0 else ''}{name.partition('_')[2]} s", fontsize=7)
+            style.photo(
+                axes, pictures[case, name], f"{case + ', ' if i == 0 else ''}{name.partition('_')[2]} s", fontsize=7
+            )
     left, right = (figure.add_subplot(graphs[k]) for k in (0, 1))
     for (case, run), line in zip(runs.items(), ("book", "plain")):
         gap = 100 * np.linalg.norm(run["box.pose"][:, :3] - run["middle"], axis=1)

@@ -66,8 +66,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     style.panel(
         plans[1, 0], "c", f"left-forward ({case.direction:g}), {style.at_least(worst['clearance_chosen'], 2)} cm clear"
     )
-    draw_stiffness(level, recording)
-    style.panel(level, "d", "stiffness for the 4 cm obstacle")
+    draw_stiffness(level, recording, case)
+    style.panel(level, "d", f"stiffness for the {case.task.height:g} cm obstacle")
     style.title(
         figure,
         f"Three directions clear the new obstacle by {style.at_least(worst['clearance_three'], 1)} cm; in between "
@@ -107,10 +107,11 @@ def draw_clearance(panel: Any, recording: Recording, case: Config, obstacle: Any
               ylim=(-0.8, 1.5))  # fmt: skip
 
 
-def draw_stiffness(panel: Any, recording: Recording) -> None:
+def draw_stiffness(panel: Any, recording: Recording, case: Config) -> None:
     style.band(panel, recording.time, recording["stiffness_low"], recording["stiffness_tall"])
-    panel.annotate("2 cm", (4.9, recording["stiffness_low"][-1]), fontsize=6.5, va="top", ha="right")
-    panel.annotate("8 cm", (4.9, recording["stiffness_tall"][-1]), fontsize=6.5, va="bottom", ha="right")
+    for name, side in (("low", "top"), ("tall", "bottom")):
+        place = (0.98 * recording.time[-1], recording[f"stiffness_{name}"][-1])
+        panel.annotate(f"{case.scene[name]:g} cm", place, fontsize=8, va=side, ha="right")
     panel.plot(recording.time, recording["stiffness"], label="average ends (as printed)", **style.LINES["book"])
     panel.plot(recording.time, recording["stiffness_fuzzy"], label="fuzzy ends", **style.LINES["rival"])
     panel.plot(recording.time, recording["stiffness_truth"], label="the person's own", **style.LINES["reference"])

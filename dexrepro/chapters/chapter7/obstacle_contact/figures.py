@@ -13,7 +13,7 @@ from dexrepro.report import style
 FIGURES = {
     "7.D": Figure(
         "The arm passes forward over a stack that is taller than planned, so that its end touches the soft top, and "
-        "is pushed sideways with 0.5 N before the obstacle, behind it and at rest (simulated; not in the book). (a) "
+        "is pushed sideways before the obstacle, behind it and at rest (simulated; not in the book). (a) "
         "Contact force. (b) Sideways deviation caused by the push before the obstacle. (c) Deviation under the three "
         "pushes without estimation; dots: with it.",
         "Contact force, a push and the deviations under three pushes, for four impedances with and without estimation.",
@@ -58,7 +58,9 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     bars.set_ylim(top=2.2 * bars.get_ylim()[1])
     bars.plot([], [], ".", color="k", markersize=3, label="with estimation")
     bars.legend(fontsize=6.5, loc="upper right", handlelength=1.0, borderpad=0.0)
-    for letter, panel, text in zip("abc", (contact, push, bars), ("contact with the stack", "push of 0.5 N", "pushes")):
+    for letter, panel, text in zip(
+        "abc", (contact, push, bars), ("contact with the stack", f"push of {config.push_force:g} N", "pushes")
+    ):
         style.panel(panel, letter, text)
     most = {
         end: max(

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from dexrepro.chapters.chapter8 import learning_study
+from dexrepro.chapters.chapter8 import drawings, learning_study
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
-from dexrepro.control.impedance_learning import EXPLORING, SOLVING, TRANSFERRING
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
-from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
+from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 from dexrepro.report import style
 
 from .experiment import VIEW
@@ -73,16 +72,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     }
 
 
-def _phases(axes: Any, run: Recording, names: bool = True) -> None:
-    for number, (phase, colour) in enumerate(
-        ((EXPLORING, "#EAF2F8"), (SOLVING, "#F6EFE0"), (TRANSFERRING, "#E9F5EC")), 1
-    ):
-        inside = run.time[run["phase"] == phase]
-        if len(inside):
-            word = ("phase " if phase != SOLVING else "") + str(number) if names else ""
-            style.phase(axes, inside[0], inside[-1], word, colour)
-
-
 def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     run, values = recordings["learned"], metrics["learned"]
     depth = 1e3 * np.maximum(config.cases.learned.sponge.surface - run["arm.tip"][:, 2], 0)
@@ -91,16 +80,14 @@ def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) 
     for axes, (instant, name) in zip(np.atleast_1d(row), instants):
         image = run.images[name]
         top = 0.1 if instant == instants[0][0] else 0.0  # the others are near views of where it touches
-        axes.imshow(image[round(top * len(image)) : round((top + 0.78) * len(image))])
-        axes.set_axis_off()
+        style.photo(axes, image[round(top * len(image)) : round((top + 0.78) * len(image))])
         pressed = depth[np.abs(run.time - instant).argmin()]
         axes.set_title(f"{instant:g} s" + (f": {pressed:.0f} mm deep" if pressed else ""))
-    style.title(
+    return style.title(
         figure,
         f"The simulated arm presses the sponge {values['peak_compression']:.0f} mm deep while it learns, "
         f"{values['final_compression']:.0f} mm in the end",
     )
-    return figure
 
 
 def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -132,7 +119,7 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     depth.set(ylim=(0.04, 0.15), xlabel="Time [s]")
     depth.axhline(surface, color="#7A5C1E", linewidth=0.6)
     depth.annotate("sponge, relaxed", (17.8, surface + 0.001), fontsize=6.5, color="#7A5C1E", ha="right", va="bottom")
-    _phases(depth, learned)
+    drawings.phases(depth, learned)
     for case, position in (("learned", 0.0835), ("lqr", 0.071)):
         depth.annotate(
             f"{metrics[case]['final_compression']:.1f} mm", (17.8, position), fontsize=7, ha="right",
@@ -148,10 +135,9 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     figure.legend(*depth.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     less = metrics["lqr"]["final_compression"] - metrics["learned"]["final_compression"]
     more = metrics["learned"]["peak_compression"] - metrics["lqr"]["peak_compression"]
-    style.title(
+    return style.title(
         figure, f"The learned law presses {less:+.1f} mm less than the regulator in the end, {more:+.1f} mm more before"
     )
-    return figure
 
 
 def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -164,11 +150,10 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
         axes.axhline(steps[f"optimal_{key}"].iloc[0], label="optimum of the true sponge", **style.LINES["reference"])
         axes.set(xlabel="Time [s]", ylabel=f"$K_{key}$ [N/m]", xlim=(0, config.duration))
         axes.set_ylim(*((-1050, 150), (0, 1200))[index])
-        _phases(axes, learned)
+        drawings.phases(axes, learned)
     row[0].legend(loc="lower left", bbox_to_anchor=(0.0, 0.14), fontsize=6.5)
     found, best = steps.iloc[-1].next_x, steps.iloc[-1].optimal_x
-    style.title(figure, f"The gain settles at {found:.1f} N/m, the optimum is {best:.1f} N/m".replace("-", "−"))
-    return figure
+    return style.title(figure, f"The gain settles at {found:.1f} N/m, the optimum is {best:.1f} N/m".replace("-", "−"))
 
 
 def _draw_stiffness(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -198,8 +183,7 @@ def _draw_stiffness(recordings: Recordings, metrics: Any, config: Config) -> Dra
     axes.set_xticks([100, 200, 500, 1000], ["100", "200", "500", "1000"])
     axes.minorticks_off()
     axes.legend(loc="lower left")
-    style.title(figure, f"Below {crossing:.0f} N/m the learned law presses more")
-    return figure
+    return style.title(figure, f"Below {crossing:.0f} N/m the learned law presses more")
 
 
 _BASE = ("learned", "lqr")

@@ -1,0 +1,36 @@
+"""What ``make figures`` and ``make test`` take on the machine that measured them, kept beside the baselines.
+
+``make measure`` renews it, by running both from a clean checkout; the README's table and the estimate at the start of a
+run are made from it.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import Any
+
+from dexrepro.storage import read_json
+
+
+def measured() -> dict[str, Any]:
+    """machine, commands {command: {time: {seconds, memory [GB], disk [GB]}}}, cases {experiment.case: seconds}."""
+    from dexrepro.baselines import baseline_dir
+
+    with suppress(OSError, ValueError):
+        return dict(read_json(baseline_dir() / "measured.json"))
+    return {}
+
+
+def markdown() -> str:
+    """The README's table of what the two commands take."""
+    from dexrepro.progress import duration
+
+    found = measured()
+    if not found.get("commands"):
+        return "`make measure` finds out what the two commands take on a machine."
+    lines = ["| command | time | memory | disk |", "| --- | --- | --- | --- |"]
+    for command, times in found["commands"].items():
+        for when, row in times.items():
+            took, memory, disk = duration(row["seconds"]), f"{row['memory']:.1f} GB", f"{row['disk']:.1f} GB"
+            lines.append(f"| `{command}`, {when} | {took} | {memory} | {disk} |")
+    return "\n".join([*lines, "", f"Measured on {found['machine']}."])
