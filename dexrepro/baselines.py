@@ -2,9 +2,9 @@
 
 A tolerance says how sensitive a number is: ``update`` reruns each case with the initial state moved by each of
 ``PERTURBATIONS``, and experiments of seconds also with the arithmetic of other machines (``arithmetics``), and keeps
-``rtol = max(1e-3, 10 x the largest relative change)``, likewise ``atol`` for metrics near zero. Counts are exact unless
-a rerun changes them. A "reason" says by what other arithmetic a metric moves farther than by another initial state; one
-in other words was set by hand with its tolerance, and survives updates.
+``rtol = max(1e-3, 10 x the largest relative change)``, 3 x that of another arithmetic, likewise ``atol`` near zero.
+Counts are exact unless a rerun changes them. A "reason" says by what other arithmetic a metric moves farther than by
+another initial state; one in other words was set by hand with its tolerance, and survives updates.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ SECONDS = 60.0  # of wall time of all cases, up to which an experiment is run wi
 RTOL = 1e-3
 ATOL = 1e-9
 NEAR_ZERO = 1e-6
+ELSEWHERE = 3.0  # times the change of another arithmetic, which is one of those that other machines show
 MEASURED = "the same code gave "  # begins a reason that an update has measured, and may renew
 TABLE = 0.05  # by which a number of a table may change where no metric of its digits is more sensitive
 
@@ -379,10 +380,11 @@ def _entry(
     """disturbed: values with a moved initial state; elsewhere: those with the arithmetic of other machines, by name."""
     if stored and not stored.get("reason", MEASURED).startswith(MEASURED):
         return {**stored, "value": value}
-    entry = _fresh_entry(value, [*disturbed, *elsewhere.values()])
+    entry, there = _fresh_entry(value, disturbed), _fresh_entry(value, list(elsewhere.values()), ELSEWHERE)
+    moved = {text: other for text, other in elsewhere.items() if not agrees(other, entry)}
+    entry |= {kind: max(entry[kind], there[kind]) for kind in ("rtol", "atol")}
     if stored and agrees(value, stored):  # a sensitivity once seen remains
         entry |= {kind: max(entry[kind], stored[kind]) for kind in ("rtol", "atol")}
-    moved = {text: other for text, other in elsewhere.items() if not agrees(other, _fresh_entry(value, disturbed))}
     if moved:
         entry["reason"] = MEASURED + "; ".join(f"{other:.6g} with {text}" for text, other in moved.items())
     elif stored and "reason" in stored and agrees(value, stored):
@@ -390,18 +392,18 @@ def _entry(
     return entry
 
 
-def _fresh_entry(value: float | None, disturbed: Sequence[float | None]) -> dict[str, Any]:
+def _fresh_entry(value: float | None, disturbed: Sequence[float | None], margin: float = 10.0) -> dict[str, Any]:
     known = [other for other in disturbed if other is not None]
     if value is None or not known:
         return {"value": value, "rtol": 0.0, "atol": 0.0}
     change = max(abs(other - value) for other in known)
     if isinstance(value, int):
-        return {"value": value, "rtol": 0.0, "atol": _rounded(10 * change)}
+        return {"value": value, "rtol": 0.0, "atol": _rounded(margin * change)}
     if abs(value) < NEAR_ZERO:
-        return {"value": value, "rtol": RTOL, "atol": _rounded(max(ATOL, 10 * change))}
-    rtol = _rounded(max(RTOL, 10 * change / abs(value)))
+        return {"value": value, "rtol": RTOL, "atol": _rounded(max(ATOL, margin * change))}
+    rtol = _rounded(max(RTOL, margin * change / abs(value)))
     if rtol > 1:  # it is near zero by the measure of its own sensitivity
-        return {"value": value, "rtol": RTOL, "atol": _rounded(10 * change)}
+        return {"value": value, "rtol": RTOL, "atol": _rounded(margin * change)}
     return {"value": value, "rtol": rtol, "atol": ATOL}
 
 

@@ -291,8 +291,8 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
         skipped |= chapter_skipped
     if settings.get("engine") is None and any(REFERENCE != plan.engine in plan.versions for plan in plans):
         err.print(
-            "PyBullet is not installed here (its wheels end at Python 3.11): MuJoCo simulates the arms; how its "
-            "numbers differ from those stored is in docs/how-to/engines.md"
+            "PyBullet is not installed here (its wheels are for Python 3.11 on Linux): MuJoCo simulates the arms; how "
+            "its numbers differ from those stored is in docs/how-to/engines.md"
         )
     quiet = bool(settings.get("quiet"))
     progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)

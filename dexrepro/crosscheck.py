@@ -16,6 +16,7 @@ import numpy as np
 
 from dexrepro import chapters
 from dexrepro.baselines import Baseline, agrees, baseline_dir
+from dexrepro.claims import NOT_EVALUATED
 from dexrepro.errors import InputError
 from dexrepro.plan import Plan, plan_chapter, uses_engine
 from dexrepro.progress import Progress
@@ -75,18 +76,22 @@ def run(
 
 
 def compare(plan: Plan, folder: Path) -> Comparison:
-    """A result of the other engine beside the stored baseline."""
+    """A result of the other engine beside the stored baseline: numbers and claims that both have."""
     baseline, made = Baseline.of(plan.chapter, plan.experiment), read_json(folder / "metrics.json")
-    outside = [name for name, entry in baseline.metrics.items() if not agrees(made.get(name), entry)]
+    both = [name for name in baseline.metrics if name in made]
+    outside = [name for name in both if not agrees(made[name], baseline.metrics[name])]
     samples = _samples(plan) if outside else []
     differences = [
-        Difference(name, baseline.metrics[name]["value"], made.get(name), _spread([row.get(name) for row in samples]))
+        Difference(name, baseline.metrics[name]["value"], made[name], _spread([row.get(name) for row in samples]))
         for name in outside
     ]
     verdicts = {claim.id: claim.evaluate(made).verdict for claim in chapters.load(plan.chapter).claims}
-    claims = {key: (verdict, verdicts.get(key, "")) for key, verdict in baseline.claims.items()}
-    version = plan.versions[OTHER]
-    return Comparison(plan.chapter, plan.experiment, version, len(baseline.metrics), differences, claims)
+    claims = {
+        key: (verdict, verdicts[key])
+        for key, verdict in baseline.claims.items()
+        if NOT_EVALUATED not in (verdict, verdicts.get(key, NOT_EVALUATED))
+    }
+    return Comparison(plan.chapter, plan.experiment, plan.versions[OTHER], len(both), differences, claims)
 
 
 def _samples(plan: Plan) -> list[Mapping[str, float | None]]:

@@ -47,6 +47,9 @@ class Config(dict[str, Any]):
         return value
 
 
+ADDED = ("case", "seed", "perturbation", "engine")  # what a case is told beside its configuration
+
+
 def changed(case: Mapping[str, Any], shared: Mapping[str, Any], prefix: str = "") -> set[str]:
     """Dotted keys in which a case differs from its experiment's own block: what the case is."""
     found: set[str] = set()
@@ -54,7 +57,7 @@ def changed(case: Mapping[str, Any], shared: Mapping[str, Any], prefix: str = ""
         other = shared.get(key)
         if isinstance(value, Mapping) and isinstance(other, Mapping):
             found |= changed(value, other, f"{prefix}{key}.")
-        elif value != other:
+        elif value != other and (key in shared or key not in ADDED):
             found.add(f"{prefix}{key}")
     return found
 
@@ -146,7 +149,7 @@ class Experiment:
     stage(world, recording, config) -> Recording: for a film, adds what is only seen to the scene and returns channels
         under the names that ``World.snapshot`` reads.
 
-    ``figures.py`` may hold ``FIGURES``, ``TABLES``, ``FILM`` and
+    ``figures.py`` may hold ``FIGURES``, ``TABLES``, ``FILM``, ``UNITS`` (of channels, by name) and
 
     draw(recordings, metrics, config) -> {figure id: matplotlib Figure}: from what is on disk alone. A figure whose
         cases are missing is left out.
@@ -193,6 +196,11 @@ class Experiment:
     @property
     def film(self) -> Film | None:
         return self._part("figures", "FILM", None)
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Units of channels that are not the world's own, by name."""
+        return self._part("figures", "UNITS", {})
 
     @property
     def claims(self) -> tuple[Claim, ...]:

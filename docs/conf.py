@@ -24,6 +24,7 @@ autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True, "show-inheritance": True}
 html_theme = "furo"
 html_copy_source = False
+html_show_copyright = False
 smartquotes = False  # --json is two hyphens
 suppress_warnings = ["mystnb.unknown_mime_type"]
 

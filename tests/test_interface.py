@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -112,3 +113,16 @@ def test_what_an_experiment_offers_has_the_types_of_the_vocabulary(module: Path)
     for node in ast.parse(module.read_text(encoding="utf-8")).body:
         if isinstance(node, ast.FunctionDef) and node.name in SIGNATURES:
             assert f"({ast.unparse(node.args)}) -> {ast.unparse(node.returns)}" in SIGNATURES[node.name], node.name
+
+
+DECODING = re.compile(
+    r"\bcase(\.(startswith|endswith|r?partition|split|remove(prefix|suffix))\(|\[|\.case\b)|config\.case\b"
+)
+
+
+def test_no_chapter_takes_a_name_of_a_case_apart() -> None:
+    """A name is a label: what a case is stands in its configuration."""
+    chapters = (ROOT / "dexrepro" / "chapters").rglob("*.py")
+    assert [f"{path}: {found[0]}" for path in chapters if (found := DECODING.search(path.read_text("utf-8")))] == []
+    assert DECODING.search('if case.startswith("k"):')
+    assert not DECODING.search("config.cases[case].law")

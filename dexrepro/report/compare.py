@@ -104,9 +104,10 @@ def _recorded(a: Path, b: Path, cases: list[dict[str, Any]], page: Path) -> tupl
     found = []
     with tempfile.TemporaryDirectory() as folder:
         for name, place, known in zip("AB", (a, b), cases):
+            experiment = check_result(place)
             target = Path(folder) / name
             target.mkdir()
-            if (series := explorer.write(place, target, known, None)) is None:
+            if (series := explorer.write(place, target, known, experiment.film, experiment.units)) is None:
                 return {"cases": {}}, ""
             for case, entry in series["cases"].items():
                 entry["csv"] = Path(os.path.relpath(place / "series" / f"{case}.csv.gz", page.parent)).as_posix()

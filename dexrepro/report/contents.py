@@ -105,7 +105,7 @@ class Contents:
             for identifier, figure in experiment.figures.items()
             if is_safe(place / "figures" / f"{file_stem(identifier)}.svg")
         ]
-        series = explorer.write(place, target, run["cases"], experiment.film)
+        series = explorer.write(place, target, run["cases"], experiment.film, experiment.units)
         if series:
             series["scene"] = explorer.scene(place, target, experiment)
         factor = f", {run['real_time_factor']:.1f} times real time" if run["real_time_factor"] else ""

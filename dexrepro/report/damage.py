@@ -8,7 +8,7 @@ import re
 import zlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import yaml
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 LARGEST = 1 << 28  # bytes of a series when it is unpacked
+BLOCK = 1 << 20  # bytes, of which no line has so many
 ENTRY = {"status": str, "steps": int, "simulated": (int, float), "wall": (int, float)}
 RUN = {"chapter": str, "experiment": str, "cases": dict, "differs": list, "packages": dict, "wall": (int, float)}
 CLAIM = {"id": str, "figure": str, "statement": str, "source": str, "verdict": str, "values": dict}
@@ -65,12 +66,18 @@ def check_result(folder: Path, *names: str, series: bool = False) -> Experiment:
 def check_series(path: Path) -> None:
     try:
         with gzip.open(path) as file:
-            read = 0
-            while block := file.read(1 << 20):
-                if (read := read + len(block)) > LARGEST:
-                    raise OSError(f"it unpacks to more than {LARGEST >> 20} MB")
+            _check_lines(file)
     except (OSError, EOFError, zlib.error) as error:
         raise _damaged(path, str(error)) from error
+
+
+def _check_lines(file: BinaryIO | gzip.GzipFile) -> None:
+    read = 0
+    while block := file.read(BLOCK):
+        if (read := read + len(block)) > LARGEST:
+            raise OSError(f"it holds more than {LARGEST >> 20} MB")
+        if len(block) == BLOCK and b"\n" not in block:
+            raise OSError("it has a line of more than a million letters")
 
 
 def read_table(path: Path) -> pd.DataFrame:
@@ -78,6 +85,8 @@ def read_table(path: Path) -> pd.DataFrame:
     from dexrepro.recordings import read_frame
 
     try:
+        with open(path, "rb") as file:
+            _check_lines(file)
         return read_frame(path)
     except (OSError, ValueError) as error:
         reason = " ".join(str(error).split())

@@ -34,7 +34,9 @@ UNITS = {  # of the channels that every arm and object of the world records
 ARMS = ("arm", "leader", "follower", "left", "right", "object")
 
 
-def write(place: Path, target: Path, cases: Iterable[str], film: Film | None) -> dict[str, Any] | None:
+def write(
+    place: Path, target: Path, cases: Iterable[str], film: Film | None, units: Mapping[str, str] | None = None
+) -> dict[str, Any] | None:
     """Write ``target/series-<case>.js`` for every recorded case; returns what the page must know, None without any."""
     found: dict[str, Any] = {}
     for case in cases:
@@ -50,7 +52,7 @@ def write(place: Path, target: Path, cases: Iterable[str], film: Film | None) ->
     if not found:
         return None
     names = list(dict.fromkeys(_name(column) for case in found.values() for column in case["channels"]))[1:]
-    channels = [{"name": name, "unit": unit(name, film)} for name in names]
+    channels = [{"name": name, "unit": (units or {}).get(name) or unit(name, film)} for name in names]
     return {"name": target.name, "cases": found, "channels": channels, "first": _first(names, list(found), film)}
 
 

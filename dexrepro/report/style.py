@@ -103,14 +103,15 @@ def subplots(
     return _pyplot().subplots(rows, columns, figsize=(width, height), **options)
 
 
-def title(figure: Figure, text: str) -> None:
-    """The finding, above all panels, left-aligned, broken into lines of like length that fit the width."""
+def title(figure: Figure, text: str) -> Figure:
+    """The figure with its finding above all panels, left-aligned, in lines of like length that fit the width."""
     markup = len(text) - len(re.sub(r"[$\\_^{}]", "", text))
     width = int(figure.get_figwidth() / TITLE_CHARACTER) + markup
     lines = len(textwrap.wrap(text, width))
     while lines > 1 and len(textwrap.wrap(text, width - 1)) == lines:
         width -= 1
     figure.suptitle(textwrap.fill(text, width), x=0.01, ha="left", fontsize=9, fontweight="bold")
+    return figure
 
 
 def at_most(value: float, digits: int) -> str:
@@ -139,8 +140,7 @@ def picture(image: Any, finding: str, height: float = 2.5) -> Figure:
     """A figure of one picture without its white margin, a column wide."""
     figure, axes = subplots(width=ONE_COLUMN, height=height)
     photo(axes, trimmed({"": image})[""])
-    title(figure, finding)
-    return figure
+    return title(figure, finding)
 
 
 def trimmed(images: Mapping[Any, Any]) -> dict[Any, Any]:

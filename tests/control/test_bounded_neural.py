@@ -183,3 +183,19 @@ def test_the_printed_gain_is_the_bound_s_rate_times_a_root_of_limits_and_converg
     tracking.bound = bound = PerformanceBound(0.15, 0.02, 2.0, lower=0.6, upper=0.8)
     expected = -np.sqrt(1 / 0.8**2 + 1 / 0.6**2 + 10.0**2) * abs(bound.rate(0.0)[1])
     assert tracking._virtual_gain()[1] == pytest.approx(expected)
+
+
+def test_the_push_of_the_barrier_no_longer_grows_close_to_the_bound():
+    """F = e / (b^2 - e^2) up to 0.9998 of the bound, where 1 - e^2/b^2 is 0.02^2; beyond it the push stays."""
+    target = Motion(*np.zeros((3, 2)))
+
+    def push(share):
+        place = at(-share * 0.15 * np.ones(2), 0.0, np.zeros(2))
+        return (
+            law(barrier_gain=1.0, torque_limit=np.inf)(place, target).torque
+            - law(barrier_gain=0.0)(place, target).torque
+        )
+
+    assert push(0.99) == pytest.approx(0.99 / (0.15 * (1 - 0.99**2)), rel=1e-6)
+    assert push(1.0) == pytest.approx(1.0 / (0.15 * 0.02**2), rel=2e-3)
+    assert push(1.2) == pytest.approx(push(1.0))

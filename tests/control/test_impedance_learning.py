@@ -162,7 +162,13 @@ def test_the_phases_of_the_algorithm_last_as_long_as_they_are_told():
     assert gain.gain == pytest.approx(gain.learned.gain[0])
     assert gain.samples.shape == (1251, 3)
     gain.reset()
-    assert (gain.phase, gain.gain, gain.learned, len(gain.samples)) == (WAITING, INITIAL, None, 0)
+    assert (gain.phase, gain.gain, gain.learned, len(gain.samples), gain.exploration) == (
+        WAITING,
+        INITIAL,
+        None,
+        0,
+        0.0,
+    )
 
 
 def test_the_auxiliary_signal_obeys_its_exosystem():
@@ -195,3 +201,15 @@ def test_the_references_are_the_systems_they_are_called_after():
     state = Motion(0.2, 0.3, 0.0)
     assert IntegratingReference(0.5, 40.0, DT).acceleration(state, 2.0, 0.7, 9.0) == pytest.approx(40 * (0.65 - 0.3))
     assert StaticReference(20.0, DT).acceleration(state, 2.0, 0.7, 0.9) == pytest.approx(400 * 0.7 - 40 * 0.3)
+
+
+def test_the_printed_sign_is_that_of_the_whole_law():
+    """tau_e = +K [x, s] in the place of -K [x, s]: at one state the two wanted forces are opposite."""
+    wanted = []
+    for printed in (False, True):
+        reference = StaticReference(20.0, DT)
+        law = InteractionLaw(ConstantGain([-5.0, 0.3]), reference, COST.output, 1, 1e-6, 5.0, printed=printed)
+        law(at(0.0, -0.1), Motion(0.05, 0.0, 0.0))
+        law(at(0.01, -0.1), Motion(0.05, 0.0, 0.0))
+        wanted.append(law.desired_force)
+    assert wanted == pytest.approx([5.0 * 0.01 - 0.3 * 1.0, -5.0 * 0.01 + 0.3 * 1.0])

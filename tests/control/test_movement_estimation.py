@@ -138,3 +138,17 @@ def test_velocity_and_acceleration_are_the_derivatives_of_the_polynomial():
     assert law.position == pytest.approx(rest(0.8))
     assert law.velocity == pytest.approx(rest.deriv(1)(0.8))
     assert law.acceleration == pytest.approx(rest.deriv(2)(0.8))
+
+
+def test_the_implicit_step_takes_the_error_that_is_left_after_it():
+    """e / (1 + dt sum_j g_j Y_j^2) with Y = (x, 1, t, t^2): what an explicit step leaves, to the first order in dt."""
+    rates, x, force, steps = (30.0, 3.0, 5.0, 7.0), 0.7, 2.0, 500
+    explicit, implicit = (estimation(rates=rates, window=None, implicit=kind) for kind in (False, True))
+    for _ in range(steps):
+        explicit(x, force)
+    implicit.stiffness, implicit.coefficients = explicit.stiffness, list(explicit.coefficients)
+    implicit._sample, t = steps, steps * DT
+    before = explicit.stiffness
+    explicit(x, force), implicit(x, force)
+    load = 30.0 * x**2 + 3.0 + 5.0 * t**2 + 7.0 * t**4
+    assert implicit.stiffness - before == pytest.approx((explicit.stiffness - before) / (1 + DT * load), rel=1e-9)

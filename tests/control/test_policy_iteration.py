@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
-from scipy.linalg import solve_continuous_are
+from scipy.linalg import solve_continuous_are, solve_continuous_lyapunov
 
 from dexrepro.control.interaction_optimum import (
     InteractionCost,
@@ -99,6 +99,13 @@ def test_a_plant_with_two_states_and_two_inputs_is_learned():
     learned = policy_iteration(windows, weight, effort, np.zeros((2, 3)), tolerance=1e-9)
     value = solve_continuous_are(system, control, weight, effort)
     assert learned.gain == pytest.approx(np.linalg.solve(effort, control.T @ value), abs=1e-4)
+    assert learned.values[-1] == pytest.approx(value, abs=1e-4)
+    closed = system - control @ learned.gains[1]
+    second = solve_continuous_lyapunov(closed.T, -(weight + learned.gains[1].T @ effort @ learned.gains[1]))
+    assert learned.values[1] == pytest.approx(second, abs=1e-4), "the value of the gain before it"
+    steps = np.linalg.norm(np.diff(learned.values, axis=0), axis=(1, 2))
+    assert learned.changes[1:] == pytest.approx(steps)
+    assert len(windows.change) == 30, "whole windows of 0.2 s in 6 s"
 
 
 def test_data_without_excitation_are_refused():

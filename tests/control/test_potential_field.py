@@ -11,7 +11,7 @@ AXIS = np.array([0.0, 1.0, 0.0])
 def field(**changes):
     values = dict(
         ready_distance=0.25, repulsion_range=0.22, lower=0.18, upper=0.30, reach=1.8,
-        gains=(0.002, 1.0, 1.0), compliance=0.03, max_step=0.003,
+        gains=(0.002, 1.3, 0.8), compliance=0.03, max_step=0.003,
     )  # fmt: skip
     return PotentialField(**(values | changes))
 
@@ -26,6 +26,17 @@ def test_force_is_the_negative_gradient(seed):
     h = 1e-6 * np.eye(3)
     gradient = (f.potential(x + h) - f.potential(x - h)) / 2e-6
     np.testing.assert_allclose(f.force(x), -gradient, atol=1e-6 * (1 + np.abs(gradient).max()))
+
+
+def test_the_potential_is_that_of_two_springs_and_of_a_repulsion_within_its_range():
+    """U = w1 eta1 (1/rho1 - 1/rho0)^2 / 2 + w2 eta2 rho2^2 / 2 + w3 eta3 rho3^2 / 2, Eq. (1.18), one place or many."""
+    f = field()
+    f.place(np.zeros(3), AXIS, 0.24 * AXIS)  # w = 1/2 each
+    near, far = np.array([0.1, 0.24, 0.0]), np.array([0.3, 0.24, 0.0])
+    springs = [0.25 * (1.3 * (x**2 + 0.25**2) + 0.8 * (x**2 + (0.24 * 0.8) ** 2)) for x in (0.1, 0.3)]
+    repulsion = 0.25 * 0.002 * (1 / 0.1 - 1 / 0.22) ** 2
+    np.testing.assert_allclose(f.potential(np.stack([near, far])), [springs[0] + repulsion, springs[1]])
+    assert f.potential(near) == pytest.approx(springs[0] + repulsion)
 
 
 def test_weights_share_the_field_and_move_monotonically():
@@ -73,4 +84,6 @@ def test_weights_that_are_given_stay():
     f = field(weights=(0.2, 0.3, 0.5))
     f.place(np.zeros(3), AXIS, 0.5 * AXIS)
     assert f.active == (0.2, 0.3, 0.5)
-    np.testing.assert_allclose(f.force(0.9 * AXIS), (-0.3 * (0.9 - 0.75) - 0.5 * (0.9 - 0.3)) * AXIS, atol=1e-15)
+    np.testing.assert_allclose(
+        f.force(0.9 * AXIS), (-0.3 * 1.3 * (0.9 - 0.75) - 0.5 * 0.8 * (0.9 - 0.3)) * AXIS, atol=1e-15
+    )

@@ -102,6 +102,6 @@ def test_the_nearest_point_lies_on_one_of_the_segments_or_at_a_corner():
         ([0.9, 0.4, 0.0], 1, [1, 0.4, 0]),
         ([1.2, 3.0, 0.0], 1, [1, 1, 0]),
     ):
-        found, place = closest_point(np.array(centre), corners)
+        found, place = closest_point(np.array(centre, dtype=float), corners)
         assert found == segment
         assert place == pytest.approx(point)

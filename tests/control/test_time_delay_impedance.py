@@ -212,3 +212,35 @@ def test_the_plain_rival_has_the_same_error():
         at(np.array([0.1]), 0.0, np.array([0.3])), Motion(np.array([0.2]), np.array([0.7]), np.zeros(1))
     ).torque
     assert torque == pytest.approx([0.3 * np.cos(0.1) + 0.4 * (0.7 - 0.3 + 5.0 * (0.2 - 0.1))])
+
+
+def test_the_rival_s_integral_adds_up_and_is_held_where_the_torque_is_at_its_limit():
+    """tau = M (q_d'' + k e') + G + K r + integral of rate K r: each period adds rate dt K r, none at the limit."""
+    plant, r = Axis(weight=0.05), 0.2 + 20.0 * 0.01
+    told, goal = at(np.array([0.3]), 0.0, np.array([0.1])), Motion(np.array([0.31]), np.array([0.3]), np.array([2.0]))
+    for limit, grows in ((np.inf, True), (0.01, False)):
+        law = TimeDelayImpedance(
+            plant, DT, 20.0, ConstantImpedance(0.4), estimation=False, integral_rate=3.0, torque_limit=limit
+        )
+        torques = [law(told, goal).torque[0] for _ in range(3)]
+        expected = plant.mass * (2.0 + 20.0 * 0.2) + 0.05 * np.cos(0.3) + 0.4 * r
+        added = 3.0 * DT * 0.4 * r
+        assert torques == pytest.approx([min(expected + k * added * grows, limit) for k in range(3)])
+        assert law.diagnostics()["filtered_error"] == pytest.approx([r])
+        law.reset(told)
+        assert law(told, goal).torque[0] == torques[0]
+
+
+def test_the_delayed_torque_goes_through_the_filter_of_the_velocity():
+    """tau_hat = tau~ - M q'' - n, where tau~ follows the torque as the measured velocity follows the true one."""
+    plant = Axis(weight=0.05)
+    law = TimeDelayImpedance(plant, DT, 20.0, ConstantImpedance(0.4), velocity_filter=0.25)
+    bare = TimeDelayImpedance(plant, DT, 20.0, ConstantImpedance(0.4), estimation=False)
+    goal, velocities, filtered = Motion(np.array([0.31]), np.array([0.3]), np.array([2.0])), [0.1, 0.14, 0.11], None
+    for k, velocity in enumerate(velocities):
+        told = at(np.array([0.3]), 0.0, np.array([velocity]))
+        torque, expected = law(told, goal).torque, bare(told, goal).torque
+        if k:
+            expected = expected + filtered - plant.mass * (velocity - velocities[k - 1]) / DT - 0.05 * np.cos(0.3)
+        assert torque == pytest.approx(expected)
+        filtered = torque if filtered is None else filtered + 0.25 * (torque - filtered)

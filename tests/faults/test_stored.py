@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import gzip
 import json
+import resource
 import shutil
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -165,12 +167,40 @@ def test_damage_is_named(toy_result: Path, command: Command, kind: str) -> None:
     assert sorted(toy_result.rglob("*")) == left
 
 
-def test_a_series_that_unpacks_without_end_is_refused(
-    toy_result: Path, command: Command, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("dexrepro.report.damage.LARGEST", 1 << 22)
-    (toy_result / "series/plain.csv.gz").write_bytes(gzip.compress(bytes(1 << 23)))
-    assert "it unpacks to more than 4 MB" in command("draw")[1]
+def packed(name: str, block: bytes, times: int) -> Damage:
+    """A member of gzip is packed once and repeated, as many times as it is to unpack."""
+    return lambda folder: (folder / name).write_bytes(gzip.compress(block, 1) * times)
+
+
+LARGE: dict[str, tuple[Damage, str]] = {
+    "aliases": (text("config.yaml", BOMB), "draw"),
+    "a series without end": (packed("series/plain.csv.gz", b"0.0,1.0\n" * (1 << 17), 300), "draw"),
+    "a series of one line": (packed("series/plain.csv.gz", b"1" * (1 << 20), 40), "draw"),
+    "a table of one line": (lambda folder: text("tables/T90.1.csv", "9" * (40 << 20))(folder), "check"),
+    "metrics of one line": (lambda folder: text("metrics.json", '{"' + "x" * (60 << 20))(folder), "check"),
+    "brackets": (lambda folder: text("run.json", "[" * (10 << 20))(folder), "report"),
+}
+
+
+@pytest.mark.parametrize("kind", LARGE)
+def test_bombs_and_endless_lines_end_soon_and_in_bounded_memory(toy_result: Path, command: Command, kind: str) -> None:
+    damage, words = LARGE[kind]
+    damage(toy_result)
+    (free, most), start = resource.getrlimit(resource.RLIMIT_AS), time.process_time()
+    resource.setrlimit(resource.RLIMIT_AS, (_virtual() + (1 << 30), most))
+    try:
+        status, said = command(words)
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (free, most))
+    assert status in (1, 2), said
+    assert "cannot be used" in " ".join(said.split())
+    assert len(said) < 5000
+    assert time.process_time() - start < 2
+
+
+def _virtual() -> int:
+    """Bytes of address space that this process has."""
+    return int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
 
 
 def test_a_file_that_is_far_too_large_is_refused(toy_result: Path, command: Command) -> None:

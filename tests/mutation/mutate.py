@@ -67,7 +67,7 @@ SMALL = 1e-5  # constants below it are guards against division by zero
 
 def changes(node: ast.AST) -> Iterator[tuple[str, object]]:
     """Fields of a node with their replacements, each a wrong law of its own."""
-    if isinstance(node, ast.BinOp | ast.AugAssign) and type(node.op) in OPERATORS:
+    if isinstance(node, ast.BinOp | ast.AugAssign) and type(node.op) in OPERATORS and not _guards(node):
         yield "op", OPERATORS[type(node.op)]()
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.Not):
         yield "op", ast.UAdd() if isinstance(node.op, ast.USub) else None
@@ -89,6 +89,12 @@ def changes(node: ast.AST) -> Iterator[tuple[str, object]]:
                 yield "body", [*body[:k], ast.copy_location(ast.Pass(), item), *body[k + 1 :]]
             if k and _root(body[k - 1]) is not None and _root(body[k - 1]) == _root(item):
                 yield "body", [*body[: k - 1], item, body[k - 1], *body[k + 1 :]]
+
+
+def _guards(node: ast.BinOp | ast.AugAssign) -> bool:
+    """Whether a tiny constant is added, so that nothing is divided by zero."""
+    value = getattr(getattr(node, "right", None), "value", None)
+    return isinstance(value, float) and 0 < abs(value) < SMALL and isinstance(node.op, ast.Add | ast.Sub)
 
 
 def _root(statement: ast.stmt) -> str | None:

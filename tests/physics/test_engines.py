@@ -283,3 +283,14 @@ def test_a_soft_contact_sinks_by_its_stiffness(word):
         world.add_box("box", (0.2, 0.2, 0.2), (0, 0, 0.1), mass=2.0, contactStiffness=500.0, contactDamping=20.0)
         run = world.run(2.0)
     assert 0.1 - run["box.pose"][-1, 2] == pytest.approx(2.0 * 9.81 / 2000.0, rel=0.1)
+
+
+@pytest.mark.filterwarnings("ignore:MuJoCo")
+def test_what_diverges_is_seen_to_diverge(tmp_path, monkeypatch):
+    """An engine that put everything back to the start, as MuJoCo does by itself, would hide it."""
+    monkeypatch.chdir(tmp_path)
+    with World() as world:
+        world.add_arm("arm", baxter("right"), posture("right"))
+        run = world.run(2.0, {"arm": lambda sense: 1e4 * sense.velocity + 1.0}, on_divergence="stop")
+    assert run.status.startswith("diverged at")
+    assert not list(tmp_path.iterdir())

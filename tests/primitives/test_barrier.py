@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 
 from dexrepro.primitives.barrier import (
     Constraint,
@@ -90,6 +91,22 @@ def test_in_error_coordinates_v_never_rises_and_the_bound_holds(share, angle, sp
     assert (np.diff(v) <= 1e-12 * v[:-1]).all()
     assert constraint.satisfied(first).all()
     assert np.linalg.norm(first, axis=1).max() <= 75 * np.sqrt(-np.expm1(-2 * v[0] / weight)) * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("name", ["inside", "outside"])
+def test_the_steps_follow_the_equations_of_the_error(name):
+    constraint, errors = CASES[name], []
+    start = np.array([40.0, -30.0] if name == "inside" else [70.0, -60.0]), np.array([25.0, 10.0])
+    truth = solve_ivp(
+        lambda t, z: np.concatenate(closed_loop_rates(z[:2], z[2:], constraint, GAINS, 0.8)),
+        (0, 0.2), np.concatenate(start), rtol=1e-10, atol=1e-10,
+    ).y[:, -1]  # fmt: skip
+    for dt in (4e-3, 1e-3):
+        first, second, _ = decay_in_error_coordinates(*start, constraint, GAINS, 0.8, dt, round(0.2 / dt))
+        assert len(first) == round(0.2 / dt) + 1
+        errors.append(np.abs(np.concatenate([first[-1], second[-1]]) - truth).max())
+    assert errors[1] < 0.05
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1), "of first order"
 
 
 def test_gain_carries_the_barrier_only_near_the_bound():

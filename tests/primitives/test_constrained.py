@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from dexrepro.primitives.barrier import Constraint, Gains
-from dexrepro.primitives.constrained import LAWS, Reference, Skill, rollout
+from dexrepro.primitives.barrier import Constraint, Gains, gain
+from dexrepro.primitives.constrained import LAWS, Moment, Reference, SafetyFilter, Skill, rollout
 
 GAINS = Gains()
 
@@ -195,3 +195,87 @@ def test_a_projected_step_uses_up_the_share_lambda_of_the_free_margin(rate):
     assert len(on) > 10
     free = 0.3 - path.distance
     np.testing.assert_allclose(free[on], (1 - rate) * free[on - 1], rtol=1e-6, atol=1e-8)
+
+
+def moment(inside=True, **parts):
+    rng = np.random.default_rng(4)
+    named = {name: rng.normal(size=2) for name in Moment.__slots__}
+    return Moment(**{**named, "margin": 0.5, "inside": inside, "time_constant": 1.7, **parts})
+
+
+def test_each_reading_of_the_law_takes_the_acceleration_that_it_is_called_after():
+    """(6.14), (6.15): dv/dt = own + d(alpha_2)/dt + k_n z2 - an acceleration; solved for dv/dt where it is that."""
+    now = moment()
+    wanted = now.stabiliser_rate + now.decay
+    expected = {
+        "consistent": wanted,
+        "printed": (now.own + wanted) / 2,
+        "lagged": now.own + wanted - now.previous,
+        "feedforward": now.own + wanted - now.nominal,
+        "none": now.own,
+    }
+    for name, acceleration in expected.items():
+        np.testing.assert_allclose(LAWS[name].base(now) + LAWS[name].share * now.decay, acceleration)
+
+
+@pytest.mark.parametrize("inside", [True, False])
+def test_the_filter_gives_the_least_acceleration_that_keeps_its_condition(inside):
+    """b'' + (p1 + p2) b' + p1 p2 b = 0 where it acts, for b = +-(h^2 - |e|^2) along e(t), and only along e."""
+    size, h, p1, p2 = (0.4 if inside else 0.6), 1e-4, 7.0, 11.0
+    e = size * np.array([0.6, 0.8])
+    rate = (3.0 if inside else -3.0) * e + np.array([0.2, -0.1])
+    now, step = moment(inside, error=e, error_rate=rate), SafetyFilter((p1, p2))
+    applied = step(now)
+
+    def barrier(t):
+        moved = e + t * rate + t**2 / 2 * (now.reference_acceleration - applied / now.time_constant)
+        return (1 if inside else -1) * (0.25 - moved @ moved)
+
+    first = (barrier(h) - barrier(-h)) / (2 * h)
+    second = (barrier(h) - 2 * barrier(0) + barrier(-h)) / h**2
+    assert second + (p1 + p2) * first + p1 * p2 * barrier(0) == pytest.approx(0.0, abs=1e-5)
+    assert (applied - now.own) @ [-e[1], e[0]] == pytest.approx(0.0, abs=1e-9)
+    assert np.abs(applied - now.own).max() > 0.1
+    back = moment(inside, error=e, error_rate=-rate, own=np.zeros(2), reference_acceleration=np.zeros(2))
+    assert np.array_equal(step(back), back.own), "it moves away from the bound by itself"
+
+
+@pytest.mark.parametrize("explicit", [False, True])
+@pytest.mark.parametrize("law", ["consistent", "printed"])
+def test_one_step_is_that_of_its_equation(law, explicit):
+    """dv/dt = base + share k_n d_z (alpha_2 - v): with the v and alpha_2 of the start, or of the end of the step."""
+    dt, tau = 0.01, 1.6
+    _, reference = bumpy(dt, 0.1)
+    skill = Skill(np.ones_like(reference.position), reference.position[-1], tau)
+    constraint, x, v = Constraint(True, 45.0), reference.position[0] - [0.1, 0.05], np.array([1.1, 0.4])
+    path = rollout(skill, reference, constraint, GAINS, LAWS[law], dt, x, v, explicit=explicit)
+
+    def alpha(time):
+        error = reference.position[0] - x + time * (reference.velocity[0] - v / tau)
+        return tau * (reference.velocity[0] + time * reference.acceleration[0] + 150 * error / 25)
+
+    kn = gain(150 * (reference.position[0] - x), constraint, GAINS, 1 / tau)
+    own = (156.25 * (skill.goal - x) - 25 * v + 1.0) / tau
+    rate, share = (alpha(1e-6) - alpha(-1e-6)) / 2e-6, LAWS[law].share
+    base = rate if law == "consistent" else (own + rate) / 2
+    if explicit:
+        after = v + dt * (base + share * kn * 25 * (alpha(0) - v))
+    else:
+        after = (v + dt * (base + share * kn * 25 * alpha(dt))) / (1 + dt * share * kn * 25)
+    np.testing.assert_allclose(path.velocity[1], after, rtol=1e-6)
+    np.testing.assert_allclose(path.position[1], x + dt * after / tau, rtol=1e-6)
+
+
+def test_the_level_of_a_path_is_the_barrier_s_value_and_half_the_square_of_z2():
+    """V^c with z1 = k_z e and z2 = d_z (tau (x^c' - W / d_z) - v), along any path; undefined outside."""
+    _, reference = bumpy(1e-2, 0.1)
+    constraint = Constraint(True, 45.0)
+    path = roll("none", reference, 1e-2, 0.3, tau=1.3)
+    z1 = 150 * (reference.position - path.position)
+    z2 = 25 * (1.3 * (reference.velocity + z1 / 25) - path.velocity)
+    inside = np.linalg.norm(z1, axis=1) < 45
+    assert inside.sum() > 20
+    expected = constraint.value(z1[inside]) + 0.5 * (z2[inside] ** 2).sum(axis=1)
+    np.testing.assert_allclose(path.lyapunov[inside], expected)
+    assert np.isnan(path.lyapunov[~inside]).all()
+    np.testing.assert_allclose(path.distance, np.linalg.norm(z1, axis=1) / 150)

@@ -205,3 +205,36 @@ def test_derivatives_are_those_of_the_quintic_spline(at_rest):
 def test_unequal_steps_are_refused():
     with pytest.raises(ValueError, match="equally spaced"):
         Demonstration.of(np.linspace(0, 1, 20) ** 2, np.zeros((20, 2)))
+
+
+def test_each_scaling_is_the_amplitude_it_says():
+    """The goal is a tenth of the largest range away on the first axis and two fifths on the second."""
+    time = np.linspace(0, 1, 50)
+    rise = time**3 * (10 - 15 * time + 6 * time**2)
+    bow = np.sin(np.pi * rise) * 9.5
+    shown = Demonstration.of(time, np.stack([rise + bow, 3.0 - 4.0 * rise], axis=1))
+    largest = shown.extent.max()
+    assert largest > 2 * shown.extent.min()
+    start, goal = np.array([0.5, 1.0]), np.array([[1.0, -1.0], [3.0, 2.0]])
+    for scaling, expected in (
+        (Scaling.none(2), [[1, 1], [1, 1]]),
+        (Scaling.goal(2), [[0.5, -2], [2.5, 1]]),
+        (Scaling.guarded(shown), [[largest, -2], [largest, 1]]),
+        (Scaling.guarded(shown, 0.05), [[0.5, -2], [2.5, 1]]),
+        (Scaling.guarded(shown, 0.5), [[largest, largest]] * 2),
+        (Scaling.extent(shown), [[largest, largest]] * 2),
+    ):
+        assert scaling.amplitude(start, goal) == pytest.approx(np.array(expected))
+
+
+def test_the_acceleration_on_the_way_is_that_of_the_path():
+    dmp = primitive()
+    online, times, velocities, accelerations = dmp.online(1e-3), [], [], []
+    for _ in range(400):
+        times.append(online.time)
+        velocities.append(online.velocity)
+        accelerations.append(online.acceleration)
+        online.step()
+    slope = np.gradient(np.array(velocities), 1e-3, axis=0)
+    assert times[-1] == pytest.approx(0.399)
+    np.testing.assert_allclose(slope[1:-1], np.array(accelerations)[1:-1], atol=2e-3 * np.abs(slope).max())

@@ -1,5 +1,7 @@
 """Incremental primitives: features, the growing pseudo-inverse, styles and what is kept of the old skill."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -156,3 +158,45 @@ def test_lemma_with_the_corrected_start_fits_and_the_printed_start_leads_away():
 def test_features_of_another_skill_are_refused():
     with pytest.raises(ValueError, match="extend those of the old skill"):
         extend(base_skill(), drawn(base=GaussianKernels.spaced(12, 4.0)), bump(2.0, 0.5))
+
+
+def test_a_nearly_dependent_column_is_still_orthogonal_to_the_old_ones():
+    """The first projection leaves rounding of the size of the column, a millionth of which is left."""
+    rng = np.random.default_rng(3)
+    matrix = rng.normal(size=(50, 5))
+    column = matrix @ rng.normal(size=(5, 1)) + 1e-7 * rng.normal(size=(50, 1))
+    found = extended_pseudo_inverse(matrix, np.linalg.pinv(matrix), column)
+    assert np.abs(found[5:] @ matrix).max() < 1e-7
+    assert found[5:] @ column == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_printed_factor_stands_sample_by_sample_or_as_its_mean():
+    """theta = [Psi | -Upsilon]^+ of Gamma / (1 - Gamma) Delta f, Eqs. (5.24), (5.29)."""
+    blocks, rng = drawn(10).blocks(PHASES), np.random.default_rng(6)
+    target, factor = rng.standard_normal((len(PHASES), 2)), 1 / (blocks.share - 1)
+    joined = np.linalg.pinv(np.hstack([blocks.kernels, -blocks.enhancement]), rcond=1e-10)
+    inverse = np.linalg.pinv(blocks.kernels, rcond=1e-10)
+    for reading, scaled in (("row_wise", factor * target), ("scalar", factor.mean() * target)):
+        expected = joined @ scaled
+        assert blocks.change @ lemma_weights(blocks, target, reading) == pytest.approx(
+            blocks.change @ expected, abs=1e-6 * np.abs(scaled).max()
+        )
+    printed = lemma_weights(blocks, target, "printed_start") - lemma_weights(blocks, target, "row_wise")
+    first = inverse @ target - inverse @ (factor * target)
+    assert printed[: blocks.kernels.shape[1]] == pytest.approx(first)
+    assert not printed[blocks.kernels.shape[1] :].any()
+
+
+def test_mixed_styles_mix_their_initial_velocities():
+    first, second = extend_styles(base_skill(), drawn(8), [bump(2.0, 0.5), bump(0.5, -0.4)], rest=0.5)
+    moving = replace(first, velocity=np.array([1.0, -2.0])), replace(second, velocity=np.array([3.0, 0.5]))
+    assert interpolate(*moving, 0.3).velocity == pytest.approx([0.3 + 2.1, -0.6 + 0.35])
+
+
+def test_an_instant_counts_from_the_first_sample():
+    shown = bump(2.0, 0.5)
+    later = Demonstration(shown.time + 7.0, shown.position, shown.velocity, shown.acceleration)
+    now, then = (extend(base_skill(), drawn(), which, rest=rest) for which, rest in ((shown, 0.5), (later, 0.5)))
+    np.testing.assert_allclose(then.weights, now.weights, atol=1e-9 * np.abs(now.weights).max())
+    bare, held = (extend(base_skill(), drawn(), shown, rest=rest).weights for rest in (0.0, 0.5))
+    assert np.abs(bare - held).max() > 1e-6, "rest adds samples at the goal"

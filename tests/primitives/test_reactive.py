@@ -95,3 +95,12 @@ def test_scaling_is_the_identity_at_the_old_task_and_turns_with_the_new_one():
     path, _ = system.solve(forcing, 1 / 300, start, goal)
     turned, _ = system.solve(forcing @ scaling.T, 1 / 300, turn @ start, turn @ goal)
     assert turned == pytest.approx(path @ turn.T)
+
+
+def test_the_ridge_is_relative_to_the_mean_power_of_the_features():
+    """Features in another unit give weights in that unit; the ridge is what it says: ridge sum of squares / p."""
+    features, target = KERNELS.features(PHASES), smooth_targets(1)[0]
+    weights = ridge_weights(features, target, 0.01)
+    assert ridge_weights(1000.0 * features, target, 0.01) == pytest.approx(weights / 1000.0)
+    added = 0.01 * np.mean(features**2) * len(features)
+    assert (features.T @ features + added * np.eye(8)) @ weights == pytest.approx(features.T @ target)

@@ -107,6 +107,7 @@ def test_files_of_many_makes_hold_the_same_path(tmp_path: Path, text: str, encod
         ("time,x [inch],y [in]", None, None, None),
         ("time,x [inch],y [inch]", Format(time_unit="ms"), 0.0254, 1e-3),
         ("t_ms,x_cm,y_cm", Format("cm", "ms"), 1e-2, 1e-3),
+        ("t_ms,x_cm,y_cm", Format(), 1e-2, 1e-3),
         ("time,x,y", Format("mm", "ms"), 1e-3, 1e-3),
         ("time,x [px],y [px]", Format("mm", "s"), 1e-3, 1.0),
     ],
@@ -142,14 +143,22 @@ def test_a_header_that_leaves_a_doubt_gets_one_sentence(
         read_path(write(tmp_path, rows, header + "\n"), style, axes=2)
 
 
+def rested(pause: float) -> list[float]:
+    """Two strokes of 200 samples in 0.995 s each, and a pause [s] between."""
+    return [*(0.005 * np.arange(200)), *(0.995 + pause + 0.005 * np.arange(200))]
+
+
 @pytest.mark.parametrize(
     ("stamps", "sentence"),
     [
         ([0, *(2233.5 + 0.05 * np.arange(59))], "line 3 comes 2233.5 s after the line before, where the usual step is"),
         ([*(0.05 * np.arange(30)), *(9 + 0.05 * np.arange(30))], "line 32 comes 7.55 s after .* set time_unit="),
+        (rested(1.15), "line 202 comes 1.15 s after .* delete what"),  # more than a third of the time
         (50.0 * np.arange(60), "line 3 comes 50 s after the line before, and all take 2950 s; set time_unit=ms if"),
         (1.7e18 + 5e7 * np.arange(60), "set time_unit=ns if that is the unit of its stamps, time_unit=s if it is"),
         (1.7e15 + 5e4 * np.arange(60), "set time_unit=us if that"),
+        (1200.0 * np.arange(60), "set time_unit=us if that"),
+        (900.0 * np.arange(60), "set time_unit=ms if that"),
         (np.arange(100), "line 3 comes 1 s after the line before, and all take 99 s; set time_unit=ms"),
         (1e-6 * np.arange(60), "it lasts 5.9e-05 s from line 2 to 61; time_unit= must be another"),
     ],
@@ -165,7 +174,7 @@ def test_stamps_that_are_no_seconds_of_one_movement_get_one_sentence(tmp_path: P
     [
         1.7e9 + 0.05 * np.arange(60),  # since 1970
         np.cumsum(np.tile([0.001, 0.05], 30)),  # in pairs, as networks deliver
-        [*(0.005 * np.arange(200)), *(1.3 + 0.005 * np.arange(200))],  # the pen rests for a moment
+        rested(0.85),  # the pen rests for a while, 30 % of the time
         5.0 * np.arange(10),  # ten places of a slow task
     ],
 )

@@ -65,3 +65,23 @@ def test_printed_sign_of_the_damping_changes_the_forcing_by_twice_the_damping():
     np.testing.assert_allclose(
         SYSTEM.forcing(position, velocity, velocity, GOAL, printed=True), correct - 50.0 * velocity
     )
+
+
+@pytest.mark.parametrize("stiffness", [1.0, 25.0, 156.25, 1e-3, 3e6, 1234.567])
+def test_a_critically_damped_system_is_stepped_in_real_numbers(stiffness):
+    """D^2/4 - K is zero up to rounding: a complex pair of roots would be twice the work."""
+    step = SpringDamper.critical(stiffness).discretise(0.01)
+    assert np.isrealobj(step.first)
+    assert step.first == pytest.approx(-(stiffness**0.5))
+    slack = SpringDamper(stiffness, 1.999 * stiffness**0.5).discretise(0.01)
+    assert np.iscomplexobj(slack.first)
+
+
+@pytest.mark.parametrize("integrator", [exact, semi_implicit, runge_kutta])
+def test_no_drift_is_a_drift_of_zero(integrator):
+    x, v, ends = np.array([0.5]), np.array([1.0]), (forcing(0.0), forcing(0.01))
+    without, zero = (
+        integrator(Step(SYSTEM, GOAL, TAU, ends, None, drift), x, v, 0.01) for drift in (None, np.zeros(1))
+    )
+    assert np.array_equal(without, zero)
+    assert without[0] == pytest.approx(x + 0.01 * v / TAU, abs=0.02), "no faster than its velocity"

@@ -90,6 +90,8 @@ def test_hovering_shows_the_stored_value(explorer: Browser) -> None:
     index = abs(stored.time - instant).argmin()
     assert stored.time[index] == pytest.approx(instant, rel=1e-4)
     assert shown(explorer, "plain") == pytest.approx(stored["x"][index], rel=1e-4)
+    values = "[...document.querySelectorAll('.panel:first-child .u-legend .u-value')].map((node) => node.textContent)"
+    assert all(value.endswith((" m", " s")) for value in explorer.js(values)), "each value with its unit"
 
 
 def test_zooming_one_panel_zooms_all(explorer: Browser) -> None:

@@ -10,6 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from dexrepro import chapters
+from dexrepro.case import live
+from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Film, Recording
 from dexrepro.recordings import save_recording
 from dexrepro.report import explorer
@@ -53,3 +56,14 @@ def test_units_are_those_of_the_world_or_of_the_film() -> None:
     assert explorer.unit("error") == ""
     assert explorer.unit("error", Film("plain", "", None, "error", "Error [mm]", scale=1e3)) == "", "scaled in the film"
     assert explorer.unit("object.force", film) == "N"
+
+
+@pytest.mark.parametrize("name", ["skill_reuse", "barrier_and_switch"])
+def test_the_planar_arm_of_chapter_4_has_a_scene_from_what_was_recorded(tmp_path: Path, name: str) -> None:
+    experiment, cases = chapters.load("4").experiment(name), experiment_cases(compose_chapter("4"), name)
+    config = live({**cases["none" if "none" in cases else "base"], "law": None, "perturbation": 0.0})
+    angles = np.array([[0.0, 0.5], [1.0, 0.5]])
+    with experiment.simulation.scene(config) as world:
+        staged = experiment.simulation.stage(world, Recording({"time": np.arange(2.0), "position": angles}), config)
+        _, poses = world.animate(staged, [0.0, 1.0])
+    assert np.abs(poses[1] - poses[0]).max() > 0.5, "the links have moved"

@@ -43,8 +43,7 @@ def pictures(images: dict[str, Any], finding: str) -> Drawing:
     figure, grid = style.subplots(1, len(images), height=2.9)
     for axes, (label, image) in zip(grid, style.trimmed(images).items()):
         style.photo(axes, image, label)
-    style.title(figure, finding)
-    return figure
+    return style.title(figure, finding)
 
 
 def steps(recording: Recording, config: Config) -> Drawing:
@@ -60,8 +59,7 @@ def steps(recording: Recording, config: Config) -> Drawing:
     shown = style.trimmed(recording.images)
     for axes, (name, label) in zip(grid, labels.items()):
         style.photo(axes, shown[name], label)
-    style.title(figure, "The gripper enters through the opening and reaches the cube")
-    return figure
+    return style.title(figure, "The gripper enters through the opening and reaches the cube")
 
 
 def orientation(recording: Recording, config: Config) -> Drawing:
@@ -80,8 +78,7 @@ def orientation(recording: Recording, config: Config) -> Drawing:
     axes.text(*(centre + target) / 2, "opening to target  ", fontsize=7, color="#555555", ha="right", va="top")
     _mark(style, axes, {"$P_R$": centre, "$X_D$": target, "$X_P$": tip})
     angle = float(np.degrees(np.linalg.norm(tilt(wanted, rotation[:, 2]))))
-    style.title(figure, f"Half-way to the opening {angle:.0f}° of the turn remain")
-    return figure
+    return style.title(figure, f"Half-way to the opening {angle:.0f}° of the turn remain")
 
 
 def shortest_distance(recording: Recording, config: Config) -> Drawing:
@@ -99,8 +96,7 @@ def shortest_distance(recording: Recording, config: Config) -> Drawing:
     axes.text(*(corners[1] + corners[2]) / 2, "  tool", fontsize=7, color=style.BOOK)
     _mark(style, axes, {"elbow": corners[0], "$P_{EA}$": corners[1], "$P_E$": corners[2], "$P_R$": centre})
     distance = 1e3 * float(np.linalg.norm(centre - foot))
-    style.title(figure, f"With a free tool axis the arm passes {distance:.0f} mm beside the centre")
-    return figure
+    return style.title(figure, f"With a free tool axis the arm passes {distance:.0f} mm beside the centre")
 
 
 def _space(style: Any) -> tuple[Any, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -53,6 +54,11 @@ def scene(config: Config) -> World:
     x, y = config.task.force
     world.add(Push("arm", lambda time: (x, y, 0.0), name="field"))
     return world
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    """The recorded joint angles under the name by which the scene shows them."""
+    return replace(recording, series=recording.series | {"arm.position": recording["position"]})
 
 
 class Pilot:

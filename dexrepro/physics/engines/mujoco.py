@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
@@ -28,6 +29,9 @@ from dexrepro.physics.rendering import Camera, Overhead, Solid
 from dexrepro.physics.sensor import Sensor
 from dexrepro.robots.arm import Arm, Link, Pose, Shape
 from dexrepro.robots.rotations import rotated
+
+# It would print, and write a file into the working directory.
+mujoco.set_mju_user_warning(lambda text: warnings.warn(f"MuJoCo: {text}", stacklevel=2))
 
 KINDS = {"box": mujoco.mjtGeom.mjGEOM_BOX, "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
          "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER, "capsule": mujoco.mjtGeom.mjGEOM_CAPSULE}  # fmt: skip
@@ -229,10 +233,8 @@ class MujocoScene:
         """Make the model of everything that is there, in the state it had."""
         for item in self.items[: self._bound]:
             item.keep()
-        try:
-            self.model = self.spec.compile()
-        except ValueError as error:
-            raise LoadingError(f"MuJoCo cannot load it: {' '.join(str(error).split())}") from error
+        self.model = _compiled(self.spec)
+        self.drags.clear()
         self.data = mujoco.MjData(self.model)
         for item in self.items:
             item.bind()
@@ -520,7 +522,7 @@ class MujocoModel(RigidBodyModel):
     def _load(self, gravity: Sequence[float]) -> None:
         spec = _empty(gravity)
         _add_arm(spec, self.arm, "")
-        self._model = spec.compile()
+        self._model = _compiled(spec)
         self._data = mujoco.MjData(self._model)
         self._torque, self._mass = np.zeros(self.dof), np.zeros((self.dof, self.dof))
         self._rows = np.zeros((6, self.dof))
@@ -578,7 +580,15 @@ def _empty(gravity: Sequence[float]) -> mujoco.MjSpec:
     option.cone, option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 10.0
     option.noslip_iterations = 10
     option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP)
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)  # what diverges is to be seen to diverge
     return spec
+
+
+def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise LoadingError(f"MuJoCo cannot load it: {' '.join(str(error).split())}") from error
 
 
 def _add_arm(spec: mujoco.MjSpec, arm: Arm, prefix: str) -> list[mujoco.MjsBody]:

@@ -60,8 +60,7 @@ def _draw_arms(recording: Recording, config: Config) -> Drawing:
     axes[0].set_ylabel("y [m]")
     axes[0].annotate("DFR", (-0.05, -0.03), fontsize=7, color=style.EXTRA[0], ha="right")
     axes[0].annotate("AFR", (0.56, -0.03), fontsize=7, color=style.BOOK)
-    style.title(figure, "The follower (blue) keeps squeezing the object while its partner (green) moves right")
-    return figure
+    return style.title(figure, "The follower (blue) keeps squeezing the object while its partner (green) moves right")
 
 
 def _draw_errors(recordings: Recordings, metrics: Any) -> Drawing:
@@ -98,8 +97,7 @@ def _draw_errors(recordings: Recordings, metrics: Any) -> Drawing:
         < min(metrics[f"{case}_{law}"]["rmse"] for law in ROLES if law != "proposed")
         for case in CASES
     )
-    style.title(figure, f"The proposed law keeps the smallest force error in {best} of {len(CASES)} cases")
-    return figure
+    return style.title(figure, f"The proposed law keeps the smallest force error in {best} of {len(CASES)} cases")
 
 
 LAWS = ("proposed", "integral", "force", "passive", "proposed_tuned", "force_tuned", "passive_tuned", "printed",

@@ -79,20 +79,18 @@ def _draw_forces(recordings: Recordings, metrics: Any, config: Config) -> Drawin
         metrics[f"{t}_proposed"]["rmse"] < min(metrics[f"{t}_{law}"]["rmse"] for law in ("passive", "fixed"))
         for t in PRINTED
     )
-    style.title(
+    return style.title(
         figure,
         "The proposed law holds the force best on "
         + ("all three trajectories" if best else "some of the trajectories only")
         + " (proposed / passive / fixed)",
     )
-    return figure
 
 
 def _draw_scene(recording: Recording) -> Drawing:
     figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
     style.photo(axis, style.trimmed(recording.images)["b"])
-    style.title(figure, "Two simulated Baxter arms hold a soft object")
-    return figure
+    return style.title(figure, "Two simulated Baxter arms hold a soft object")
 
 
 def _draw_task(recording: Recording) -> Drawing:
@@ -111,8 +109,7 @@ def _draw_task(recording: Recording) -> Drawing:
     path.legend(ncols=3, loc="lower left")
     tilt.plot(recording.time, np.rad2deg(recording["tilt"]), **style.LINES["book"])
     tilt.set(xlabel="Time [s]", ylabel="Tilt [deg]")
-    style.title(figure, "One arm is led, the other keeps holding: left, tilt, swing, right, press")
-    return figure
+    return style.title(figure, "One arm is led, the other keeps holding: left, tilt, swing, right, press")
 
 
 def _draw_limits(metrics: Any) -> Drawing:
@@ -129,8 +126,7 @@ def _draw_limits(metrics: Any) -> Drawing:
     axis.legend(ncols=3, loc="upper left", fontsize=6.5, handlelength=1.0, columnspacing=0.8)
     axis.set_ylim(0.1, 10)
     worse = metrics["t1_proposed_late"]["rmse"] > metrics["t1_passive_late"]["rmse"]
-    style.title(figure, "One late sample " + ("undoes" if worse else "does not undo") + " the advantage")
-    return figure
+    return style.title(figure, "One late sample " + ("undoes" if worse else "does not undo") + " the advantage")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

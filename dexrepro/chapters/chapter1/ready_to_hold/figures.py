@@ -71,8 +71,7 @@ def _draw_field(field: pd.DataFrame, config: Config) -> Drawing:
         axis.set(xlabel="Along the holding line [m]", title=f"DFR {word}, {1e3 * part['distance'].iloc[0]:.0f} mm away",
                  xlim=(-0.2, 0.6))  # fmt: skip
     axes[0].set_ylabel("Across [m]")
-    style.title(figure, "The closer DFR comes, the more the field draws AFR into the object")
-    return figure
+    return style.title(figure, "The closer DFR comes, the more the field draws AFR into the object")
 
 
 def _draw_camera(recording: Recording, config: Config) -> Drawing:
@@ -90,8 +89,7 @@ def _draw_camera(recording: Recording, config: Config) -> Drawing:
     axis.set(xlabel="x [mm]", ylabel="z [mm]", xlim=(-170, 170), ylim=(-170, 170))
     figure.legend(loc="outside lower center", ncols=3, handletextpad=0.3, columnspacing=0.8)
     offset = np.linalg.norm(seen.mean(axis=0)) if len(centre) else 0.0
-    style.title(figure, f"The camera sees the object {offset:.0f} mm off centre")
-    return figure
+    return style.title(figure, f"The camera sees the object {offset:.0f} mm off centre")
 
 
 def _draw_task(recording: Recording, config: Config, off: float) -> Drawing:
@@ -134,10 +132,9 @@ def _draw_task(recording: Recording, config: Config, off: float) -> Drawing:
     for k, word in enumerate(words):
         axes[0].annotate(word, (0.5 * (edges[k] + edges[k + 1]), 1.0), xycoords=("data", "axes fraction"),
                          fontsize=6.5, ha="center", va="bottom", color="#555555")  # fmt: skip
-    style.title(
+    return style.title(
         figure, f"AFR keeps its distance, comes when DFR comes and points to it within {style.at_most(off, 1)} deg"
     )
-    return figure
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

@@ -41,8 +41,7 @@ def _draw_moves(moves: pd.DataFrame) -> Drawing:
         axis.set(xlabel="Time [s]", title=f"{duration:g} s movement")
     axes[0].set_ylabel("Displacement [mm]")
     axes[0].legend(loc="upper left")
-    style.title(figure, "Scaled step by step the tool stays where it went; scaled as a whole it is pulled back")
-    return figure
+    return style.title(figure, "Scaled step by step the tool stays where it went; scaled as a whole it is pulled back")
 
 
 def _draw_triads(triads: Any) -> Drawing:
@@ -59,5 +58,4 @@ def _draw_triads(triads: Any) -> Drawing:
     for name, colour in (("x", style.RIVAL), ("y", style.EXTRA[0]), ("z", style.BOOK)):
         axis.plot([], [], color=colour, linewidth=2.4 if name == "z" else 1.2, label=f"{name} axis")
     figure.legend(*axis.get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    style.title(figure, "AFR always points at DFR, its x axis along DFR's")
-    return figure
+    return style.title(figure, "AFR always points at DFR, its x axis along DFR's")

@@ -71,8 +71,7 @@ def _draw_boxes(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
             height.set_ylabel("Height [m]")
     wins = sum(metrics[size]["successes"] or 0 for size in SIZES)
     runs = sum(metrics[size]["runs"] or 0 for size in SIZES)
-    style.title(figure, f"Rigid boxes of three sizes: {wins} of {runs} are carried into the bin")
-    return figure
+    return style.title(figure, f"Rigid boxes of three sizes: {wins} of {runs} are carried into the bin")
 
 
 def _draw_gains(gains: Any, recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -86,8 +85,7 @@ def _draw_gains(gains: Any, recordings: Recordings, metrics: AllMetrics, config:
     axes[0].set_ylabel("Contact force [N]")
     loud = [config.cases[case].law["gain"] for case in gains if (metrics[case]["rmse"] or 0.0) > 1.0]
     found = f": from {min(loud):g} on the contact force jumps between samples" if loud else ""
-    style.title(figure, f"A rigid box wants a small gain{found}")
-    return figure
+    return style.title(figure, f"A rigid box wants a small gain{found}")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

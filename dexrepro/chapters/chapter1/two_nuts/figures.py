@@ -55,8 +55,7 @@ def _draw_history(recording: Recording, text: str, config: Config) -> Drawing:
     axes[1].semilogy(time, np.maximum(1e3 * near, 0.02), **style.LINES["book"])
     axes[1].set(xlabel="Time [s]", ylabel="To a nut [mm]", ylim=(0.1, 200))
     figure.align_ylabels(axes)
-    style.title(figure, text)
-    return figure
+    return style.title(figure, text)
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

@@ -72,8 +72,7 @@ def _draw_path(recording: Recording) -> Drawing:
     axes.set(xlabel="x [mm]", ylabel="y [mm]", zlabel="z [mm]")
     axes.set_box_aspect(None, zoom=0.82)
     axes.locator_params(nbins=4)
-    style.title(figure, "A line in three directions, then a circle")
-    return figure
+    return style.title(figure, "A line in three directions, then a circle")
 
 
 def _draw_result(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -109,8 +108,7 @@ def _draw_result(recordings: Recordings, metrics: AllMetrics, config: Config) ->
     bars.set(ylabel="Force RMSE [N]", yscale="log", ylim=(0.01, 20))
     style.panel(bars, "d", "line (pale) and circle")
     best = shown(metrics["proposed"]["rmse_circle"])
-    style.title(
+    return style.title(
         figure,
         f"The proposed law holds {config.desired_force:g} N within {best:.2f} N rms on the circle (simulated Baxter)",
     )
-    return figure

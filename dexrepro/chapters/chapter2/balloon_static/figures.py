@@ -55,8 +55,9 @@ def _draw_setup(recordings: Recordings, config: Config) -> Drawing:
     front.set(xlabel="x [mm]", ylabel="z [mm]", aspect="equal", xlim=(600, 820), ylim=(210, 400))
     front.legend(loc="upper left")
     style.panel(front, "b", "grippers at the start, seen along y")
-    style.title(figure, "Two arms, one balloon, and a follower that starts off the holding line (synthetic operator)")
-    return figure
+    return style.title(
+        figure, "Two arms, one balloon, and a follower that starts off the holding line (synthetic operator)"
+    )
 
 
 def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -82,5 +83,6 @@ def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
     grid[1, 1].legend(ncols=3, loc="center right")
     ends = np.ptp([run["follower.tip"][-1] for run in recordings.values()], axis=0)
     spread = 1e3 * np.linalg.norm(ends)
-    style.title(figure, f"From both starts the follower ends at one place, within {spread:.1f} mm (simulated Baxter)")
-    return figure
+    return style.title(
+        figure, f"From both starts the follower ends at one place, within {spread:.1f} mm (simulated Baxter)"
+    )

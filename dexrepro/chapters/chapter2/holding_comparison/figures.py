@@ -110,8 +110,9 @@ def _draw_histories(recordings: Recordings, metrics: AllMetrics, config: Config)
         shown(metrics[f"s{n}"]["rmse"]) / config.cases[f"s{n}"].desired_force for n in range(6, 19, 2) if n != 10
     )
     most = style.at_most(worst, 1)
-    style.title(figure, f"With (2.8) and movement estimation the force error is at most {most} % of the desired force")
-    return figure
+    return style.title(
+        figure, f"With (2.8) and movement estimation the force error is at most {most} % of the desired force"
+    )
 
 
 def _draw_settings(metrics: AllMetrics, config: Config) -> Drawing:
@@ -144,5 +145,6 @@ def _draw_settings(metrics: AllMetrics, config: Config) -> Drawing:
     right.legend()
     style.panel(right, "b", "tuned gains, with (2.8)")
     helped = [shown(metrics[led]["rmse"]) < shown(metrics[plain]["rmse"]) for plain, led in settings.values()]
-    style.title(figure, f"On Traj. 1 the impedance lead lowers the error in {sum(helped)} of {len(helped)} settings")
-    return figure
+    return style.title(
+        figure, f"On Traj. 1 the impedance lead lowers the error in {sum(helped)} of {len(helped)} settings"
+    )

@@ -23,6 +23,7 @@ FIGURES = {
         "The estimated rest position follows the true one up to a constant offset of about 5 mm.",
     ),
 }
+UNITS = {"reference": "m", "rest_position": "m"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
@@ -50,8 +51,9 @@ def _draw_forces(cases: list[str], recordings: Recordings, metrics: Any, config:
     axes.set(xlabel="Time [s]", ylabel="Contact force $f_x$ [N]")
     axes.legend(loc="center right")
     slowest = max(metrics[case]["settling_time"] for case in cases)
-    style.title(figure, f"The force is within 5 % of the desired one after {slowest:.2f} s, whatever the stiffness")
-    return figure
+    return style.title(
+        figure, f"The force is within 5 % of the desired one after {slowest:.2f} s, whatever the stiffness"
+    )
 
 
 def _draw_estimates(cases: list[str], recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -82,5 +84,4 @@ def _draw_estimates(cases: list[str], recordings: Recordings, metrics: Any, conf
         1e3 * metrics[case]["estimation_error"] for case in cases if metrics[case]["estimation_error"] is not None
     ]
     found = f" but for the {np.mean(offsets):.1f} mm that the wrong stiffness explains" if offsets else ""
-    style.title(figure, f"The estimate follows the partner{found}")
-    return figure
+    return style.title(figure, f"The estimate follows the partner{found}")

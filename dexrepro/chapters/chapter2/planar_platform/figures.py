@@ -44,8 +44,7 @@ def _draw_forces(forces: pd.DataFrame) -> Drawing:
         arrowprops={"arrowstyle": "->", "lw": 0.6},
     )
     axes[0].legend()
-    style.title(figure, "Only with a central spring does the sign of (2.8) bring the follower back to the line")
-    return figure
+    return style.title(figure, "Only with a central spring does the sign of (2.8) bring the follower back to the line")
 
 
 def _draw_platform(arms: pd.DataFrame, paths: pd.DataFrame) -> Drawing:
@@ -72,7 +71,6 @@ def _draw_platform(arms: pd.DataFrame, paths: pd.DataFrame) -> Drawing:
     tips = arms.groupby(["pose", "arm"])[["x", "y"]].last().unstack("arm")
     apart = (tips["x", "follower"] - tips["x", "leader"])["a"]
     off = 1e3 * (tips["y", "follower"] - tips["y", "leader"]).abs()["b"]
-    style.title(
+    return style.title(
         figure, f"Two planar arms {apart:g} m apart (pose b: {off:.0f} mm off the line) and the leader's two paths"
     )
-    return figure

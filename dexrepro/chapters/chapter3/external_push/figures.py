@@ -68,8 +68,7 @@ def _draw_steps() -> Drawing:
         axes.plot(time, 1 - np.exp(-gain * time), label=label, **style.LINES["reference"])
     axes.set(xlabel="Time [s]", ylabel=r"Observed $\sigma_i$ [N m]")
     axes.legend(loc="lower right")
-    style.title(figure, r"The observer lags by 1/$K_{Ex}$")
-    return figure
+    return style.title(figure, r"The observer lags by 1/$K_{Ex}$")
 
 
 def _draw_torques(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -93,8 +92,7 @@ def _draw_torques(recordings: Recordings, metrics: Any, config: Config) -> Drawi
         style.phase(axes, push.start, push.start + push.duration, "push" if axes is bottom else "")
     errors = [100 * metrics[case]["observer_error"] for case in ("plus", "exact_plus") if case in metrics]
     found = f", with an exact model by {errors[1]:.0f} %" if len(errors) > 1 else ""
-    style.title(figure, f"The observed torque errs by {errors[0]:.0f} %, mostly unknown weight{found}")
-    return figure
+    return style.title(figure, f"The observed torque errs by {errors[0]:.0f} %, mostly unknown weight{found}")
 
 
 CURVES = {
@@ -122,11 +120,10 @@ def _draw_effect(recordings: Recordings, metrics: Any, config: Config) -> Drawin
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=3)
     found = metrics["plus"]
     peak, tip = 1e3 * found["rcm_peak"], 1e3 * found["error_peak"]
-    style.title(
+    return style.title(
         figure,
         f"{np.abs(push.force).max():g} N move the arm {peak:.1f} mm off the centre and the end point by {tip:.1f} mm",
     )
-    return figure
 
 
 def _draw_sweep(table: pd.DataFrame) -> Drawing:
@@ -140,8 +137,7 @@ def _draw_sweep(table: pd.DataFrame) -> Drawing:
     axes.set(xscale="log", yscale="log", xlabel="$K_{Ex}$ [1/s]", ylabel="Error of $\\sigma$ [%]")
     axes.legend()
     best = table.gain.iloc[int(table.noisy_error.argmin())]
-    style.title(figure, f"With noise the best gain is near {best:g}/s")
-    return figure
+    return style.title(figure, f"With noise the best gain is near {best:g}/s")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

@@ -102,8 +102,9 @@ def _draw_reach(n: int, recordings: Recordings, metrics: Any, config: Config) ->
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     found = metrics[f"reach{n}"]
     final, far = 1e6 * found["final_position_error"], 1e3 * found["rcm_distance_max"]
-    style.title(figure, f"Reach {n} ends {final:.0f} µm from its target and stays within {far:.2f} mm of the centre")
-    return figure
+    return style.title(
+        figure, f"Reach {n} ends {final:.0f} µm from its target and stays within {far:.2f} mm of the centre"
+    )
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

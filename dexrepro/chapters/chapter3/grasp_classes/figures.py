@@ -57,8 +57,7 @@ def _draw_training(recording: Recording, found: Metrics) -> Drawing:
             right.text(j, i, str(counts[i, j]), ha="center", va="center", color="white" if dark else "black")
     right.set(xticks=range(3), yticks=range(3), xticklabels=NAMES, yticklabels=NAMES, xlabel="Found", ylabel="True")
     accuracy, missed = 100 * found["test_accuracy"], 100 * found["unsafe_called_safe"]  # type: ignore[operator]
-    style.title(figure, f"New scenes: {accuracy:.0f} % right, {missed:.0f} % of unsafe grasps pass for safe")
-    return figure
+    return style.title(figure, f"New scenes: {accuracy:.0f} % right, {missed:.0f} % of unsafe grasps pass for safe")
 
 
 def _draw_example(recording: Recording) -> Drawing:
@@ -78,8 +77,7 @@ def _draw_example(recording: Recording) -> Drawing:
     figure.legend(loc="outside lower center", ncols=2)
     axes.set_axis_off()
     right = float((grasps.found == grasps.true).mean())
-    style.title(figure, f"{100 * right:.0f} % of this scene's grasps are told right")
-    return figure
+    return style.title(figure, f"{100 * right:.0f} % of this scene's grasps are told right")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

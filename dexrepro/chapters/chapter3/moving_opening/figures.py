@@ -63,8 +63,7 @@ def _draw_path(run: Recording, found: Metrics, config: Config) -> Drawing:
     style.phase(right, config.motion.start, config.motion.start + config.motion.period, "moving")
     right.set(xlabel="Time [s]", ylabel="Shift of $P_R$ [mm]", ylim=(-60, 75))
     speed = 1e3 * found["centre_speed_max"]  # type: ignore[operator]
-    style.title(figure, f"The opening moves at up to {speed:.0f} mm/s")
-    return figure
+    return style.title(figure, f"The opening moves at up to {speed:.0f} mm/s")
 
 
 CURVES = {
@@ -91,8 +90,9 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=4)
     found = metrics["track"]
     far, tip = 1e3 * found["moving_distance_max"], 1e3 * found["moving_error_max"]
-    style.title(figure, f"The arm follows the opening within {far:.1f} mm while its end point errs by {tip:.1f} mm")
-    return figure
+    return style.title(
+        figure, f"The arm follows the opening within {far:.1f} mm while its end point errs by {tip:.1f} mm"
+    )
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

@@ -13,6 +13,7 @@ from dexrepro.experiment import Config, Metrics, Recording
 RATE = 50.0
 
 scene = two_link.scene
+stage = two_link.stage
 
 
 def simulate(config: Config, rng: Rng) -> Recording:

@@ -21,6 +21,7 @@ FIGURES = {
         "The switch hands over to the robust term only in the transient, and stays below 1 with the square inside.",
     )
 }
+UNITS = {"error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²"}
 TABLES = {
     "T4.B": "The ellipse from an empty network, one change at a time",
     "T4.S": "Changes that turn a verdict of chapter 4",

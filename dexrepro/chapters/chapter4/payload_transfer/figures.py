@@ -26,6 +26,7 @@ FIGURES = {
         "close.",
     ),
 }
+UNITS = {"error": "m", "tip": "m", "reference": "m", "position": "rad", "torque": "N m"}
 TABLES = {"T4.C": "Nine trajectories with a hanging payload: errors, bound and nodes by method"}
 FILM = Film(
     "reuse", "With what it learned the arm carries the loose payload from A to D, E and F (drawn hanging straight).",
@@ -62,8 +63,7 @@ def _draw_phases(recording: Recording, config: Config) -> Drawing:
             panel, shown[f"phase{k}"], f"phase {'I' * k}, {config.cases['reuse'].task.pictured[k - 1]:.1f} s: {where}"
         )
     axes[0].annotate("orange: A, B, C; green: D, E, F", (0, -0.04), xycoords="axes fraction", size=7, va="top")
-    style.title(figure, "The payload hangs from the gripper on a ball joint")
-    return figure
+    return style.title(figure, "The payload hangs from the gripper on a ball joint")
 
 
 def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -88,11 +88,10 @@ def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) ->
     style.legend_below(figure, {label: style.LINES[line] for _, label, line in shown})
     _draw_bars(figure, axes, metrics)
     fixed, constant, broad = (metrics[case]["rmse_mm"] for case in ("rbf_wide", "constant", "reuse"))
-    style.title(
+    return style.title(
         figure,
         f"Mean error {broad:.1f} mm broad, {fixed:.1f} mm fixed, {constant:.1f} mm for one node (bound: grey)",
     )
-    return figure
 
 
 def _draw_bars(figure: Any, axes: Any, metrics: AllMetrics) -> None:

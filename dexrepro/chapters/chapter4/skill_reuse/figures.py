@@ -54,6 +54,7 @@ FIGURES = {
     "4.9": Figure(WEIGHTS, "Weights for a threshold of 30 settle and ripple at the orbit's frequency."),
     "4.10": Figure(WEIGHTS, "For a threshold of 50 a single node carries the whole estimate."),
 }
+UNITS = {"error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²"}
 TABLES = {"T4.A": "Ellipse after training: errors, oscillation, nodes and gain of every method"}
 
 
@@ -156,8 +157,9 @@ def motions_and_nodes(recording: Recording, config: Config) -> Drawing:
         style.panel(panel, letter, text)
         panel.set(xlabel=r"$\dot\alpha_1$ [rad/s$^2$]", ylabel=r"$\dot\alpha_2$ [rad/s$^2$]", aspect="equal")
         panel.set(xlim=(-85, 45), ylim=(-65, 65), xticks=(-50, 0), yticks=(-50, 0, 50))
-    style.title(figure, f"{trained} nodes serve the strokes; the ellipse adds {len(centres) - trained}, for its start")
-    return figure
+    return style.title(
+        figure, f"{trained} nodes serve the strokes; the ellipse adds {len(centres) - trained}, for its start"
+    )
 
 
 def number(value: float | None) -> float:
@@ -189,8 +191,7 @@ def arm(recording: Recording, config: Config) -> Drawing:
     axes.annotate("$g$", xy=(1.4, -0.85), xytext=(1.4, -0.55), ha="center", arrowprops={"arrowstyle": "->", "lw": 0.8})
     axes.annotate("2 N", xy=(1.0, 0.55), xytext=(1.0, 0.25), ha="center", arrowprops={"arrowstyle": "->", "lw": 0.8})
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=(0, 2), ylim=(-1, 1))
-    style.title(figure, "Every run starts at rest at the centre")
-    return figure
+    return style.title(figure, "Every run starts at rest at the centre")
 
 
 def paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -216,8 +217,7 @@ def paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawin
         panel.set_ylabel("y [m]")
     _, best = min((number(metrics[case]["steady_rmse_mm"]), METHODS[case][0]) for case in shown)
     text = f"Ellipse after training (error: rms of the last 10 s), strokes below; {best} ends nearest"
-    style.title(figure, text)
-    return figure
+    return style.title(figure, text)
 
 
 def errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -247,10 +247,9 @@ def errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawi
     axes[0, 1].set_title("first 3 s")
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=6)
     worst = max(number(metrics[case]["max_usage"]) for case in shown)
-    style.title(
+    return style.title(
         figure, f"Every method stays inside the bound (at most {100 * worst:.0f} % of it); they differ in oscillation"
     )
-    return figure
 
 
 def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -275,10 +274,9 @@ def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
     bottom[0].set(ylabel="Nodes at first [-]", ylim=(0, 16), yticks=(0, 5, 10, 15))
     last = max(number(metrics[case]["last_node_s"]) for case in shown)
     counts = ", ".join(str(metrics[case]["nodes"]) for case in shown)
-    style.title(
+    return style.title(
         figure, f"A smaller threshold gives more nodes ({counts}), the last at most {last:.2f} s into the ellipse"
     )
-    return figure
 
 
 def _count_axes() -> Any:
@@ -314,5 +312,4 @@ def weights(recording: Recording, metrics: Metrics, threshold: int) -> Drawing:
     figure.legend(*axes[0, 3].get_legend_handles_labels(), loc="outside lower center", ncols=8)
     several = (metrics.get("stroke4_nodes") or 0) > 1
     who = "most of the few nodes carry" if several else "the single node carries all"
-    style.title(figure, rf"$\Theta$ = {threshold}: {who} weight, and the weights keep rippling")
-    return figure
+    return style.title(figure, rf"$\Theta$ = {threshold}: {who} weight, and the weights keep rippling")

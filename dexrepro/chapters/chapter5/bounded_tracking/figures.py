@@ -77,11 +77,10 @@ def _draw_letters(cases: list[str], recordings: Recordings, metrics: AllMetrics,
         panel.set_title(f"{config.cases[case].hand.letter}: {1e3 * metrics[case]['tip_rms']:.0f} µm")  # type: ignore[operator]
     axes[0, 0].set_ylabel("y [cm]")
     worst = max(metrics[case]["tip_rms"] for case in cases)  # type: ignore[type-var]
-    style.title(
+    return style.title(
         figure,
         f"After 1 s the arm writes every letter within {style.at_most(worst or 0.0, 2)} mm (RMS of the pen's point)",
     )
-    return figure
 
 
 def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -116,12 +115,11 @@ def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) ->
     style.legend_below(figure, {name: {"color": style.REFERENCE, "linestyle": line} for name, line in joints.items()})
     law, rival, printed = (metrics[case]["bound_use"] or 0.0 for case in ("letter_w", "pd_tuned", "printed_sign"))
     both = style.at_most(100 * max(law, rival), 0)
-    style.title(
+    return style.title(
         figure,
         f"Corrected law and tuned PD use at most {both} % of the bound, their initial error; "
         f"with the printed sign of the network it is {100 * printed:.0f} %",
     )
-    return figure
 
 
 LAWS = (

@@ -62,8 +62,9 @@ def _draw_mechanism(recording: Recording) -> Drawing:
         axes.set_xlabel("Time [s]")
     for axes in grid[:, 0]:
         axes.set_ylabel("[-]")
-    style.title(figure, "Random images of the kernels join the old features; together they still sum to the phase")
-    return figure
+    return style.title(
+        figure, "Random images of the kernels join the old features; together they still sum to the phase"
+    )
 
 
 def _draw_cost(cost: pd.DataFrame, drift: pd.DataFrame) -> Drawing:
@@ -78,12 +79,11 @@ def _draw_cost(cost: pd.DataFrame, drift: pd.DataFrame) -> Drawing:
     right.legend()
     ratio = (cost.anew / cost["update"]).iloc[-1]
     lost = " and ".join(str(count) for count, part in drift.groupby("kernels") if part.gap.iloc[-1] > LOST)
-    style.title(
+    return style.title(
         figure,
         f"The update costs up to {ratio:.0f} times less"
         + (f"; with {lost} kernels it loses the solution" if lost else ""),
     )
-    return figure
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:

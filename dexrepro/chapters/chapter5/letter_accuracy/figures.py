@@ -64,8 +64,7 @@ def _draw_paths(recording: Recording, metrics: Metrics, config: Config) -> Drawi
         row[3].set_xticks([1, 2, 3], METHODS.values())
         row[3].set_title(f"{config.kernels.draws} draws")
     shares = " and ".join(f"{100 * metrics[f'n{count}.ordered']:.0f} %" for count in counts)  # type: ignore[operator]
-    style.title(figure, f"IDMP ({most} added features) beats DMP+, DMP+ beats DMP: in {shares} of the draws")
-    return figure
+    return style.title(figure, f"IDMP ({most} added features) beats DMP+, DMP+ beats DMP: in {shares} of the draws")
 
 
 def _power(value: float) -> str:
@@ -97,8 +96,7 @@ def _draw_features(recording: Recording, metrics: Metrics, config: Config) -> Dr
     text = f"With {last} kernels, {min(better)} added features beat the DMP+" if better else "The DMP+ stays ahead"
     best = f"idmp{max(added)}.beats_dmp_plus_equal"
     shares = " and ".join(f"{100 * (metrics[f'n{count}.{best}'] or 0):.0f} %" for count in config.kernels.counts)
-    style.title(figure, f"{text}; a DMP+ with as many weights is beaten in {shares} of the draws")
-    return figure
+    return style.title(figure, f"{text}; a DMP+ with as many weights is beaten in {shares} of the draws")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:

@@ -87,11 +87,10 @@ def crossings(recording: Recording, metrics: Any, config: Config) -> Drawing:
     colours = {**names, "goals": style.RIVAL}
     style.legend_below(figure, {name: {"color": colour} for name, colour in colours.items()})
     worst = min(metrics[f"goals{b}.clearance"] for b in (2, 3))
-    style.title(
+    return style.title(
         figure,
         f"Added features lift the skill; no path of any draw comes nearer than {style.at_least(worst, 1)} cm",
     )
-    return figure
 
 
 def _lines(paths: Any, kind: str, blocks: int, colour: Any, width: float) -> tuple[list[Any], Any, float]:
@@ -165,8 +164,7 @@ def changes(recording: Recording, metrics: Any, config: Config) -> Drawing:
         panel.set(yscale="log", xlabel="Added features m [-]", title=f"{blocks - 1} to {blocks} blocks")
     axes[0].set_ylabel("RMS change\nof the path [cm]")
     worst = max(metrics[f"skill{b}.last_change"] for b in (2, 3))
-    style.title(
+    return style.title(
         figure,
         f"The last five features change the path by at most {style.at_most(100 * worst, 0)} % of what the first do",
     )
-    return figure

@@ -57,8 +57,7 @@ def _filmstrip(recordings: Recordings, config: Config) -> Drawing:
     for row, case in zip(grid, dict.fromkeys(case for case, _ in film)):
         for k, (axes, time) in enumerate(zip(row, config.film)):
             style.photo(axes, pictures[case, k], f"{config.cases[case].blocks} blocks, {time:g} s")
-    style.title(figure, "The arm carries its pen over two and three blocks")
-    return figure
+    return style.title(figure, "The arm carries its pen over two and three blocks")
 
 
 def _draw_runs(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -81,8 +80,7 @@ def _draw_runs(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
     right.legend()
     runs = [metrics[case] for case in cases.values()]
     good = sum((values["bound_use"] or 2.0) < 1 and (values["clearance"] or -1.0) > 0 for values in runs)
-    style.title(figure, f"{good} of {len(runs)} crossings stay inside the bound and clear of the obstacle")
-    return figure
+    return style.title(figure, f"{good} of {len(runs)} crossings stay inside the bound and clear of the obstacle")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:

@@ -69,11 +69,10 @@ def _draw(recording: Recording, metrics: Metrics, config: Config) -> Drawing:
     for axes, letter in zip((left, middle, right), "abc"):
         style.panel(axes, letter)
     share = {claim: f"{100 * (metrics.get(f'holds.{claim}') or 0):.0f} %" for claim in ("C5.06", "C5.07")}
-    style.title(
+    return style.title(
         figure,
         f"People's shapes: the order with {few} kernels (C5.07) holds on {share['C5.07']}, C5.06 on {share['C5.06']}",
     )
-    return figure
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:

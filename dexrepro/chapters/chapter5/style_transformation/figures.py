@@ -78,8 +78,7 @@ def demonstrations(recording: Recording, config: Config) -> Drawing:
         panel.plot([part.x.iloc[0], part.x.iloc[-1]], [part.y.iloc[0], part.y.iloc[-1]], "o", ms=3, color=style.RIVAL)
         panel.set(aspect="equal", xlabel="x [cm]", title=name)
     axes[0].set_ylabel("y [cm]")
-    style.title(figure, f"The {len(names)} demonstrated letters begin and end at the same points (dots)")
-    return figure
+    return style.title(figure, f"The {len(names)} demonstrated letters begin and end at the same points (dots)")
 
 
 def cross(recording: Recording, config: Config) -> Drawing:
@@ -93,8 +92,7 @@ def cross(recording: Recording, config: Config) -> Drawing:
     _distances(axes[:, 1], recording, config)
     names = config.hand.targets
     text = f"{', '.join(names[:-1])} and {names[-1]}" if names[1:] else names[0]
-    style.title(figure, f"From {config.hand.base} to {text} as features are added")
-    return figure
+    return style.title(figure, f"From {config.hand.base} to {text} as features are added")
 
 
 def _cross(axes: Any, recording: Recording, config: Config) -> None:
@@ -149,5 +147,4 @@ def mixtures(recording: Recording, config: Config) -> Drawing:
     for axes in grid.flat:
         axes.tick_params(labelbottom=True)
         axes.set_xlabel("x [cm]")
-    style.title(figure, "Mixed weights give the pointwise mixture of two letters")
-    return figure
+    return style.title(figure, "Mixed weights give the pointwise mixture of two letters")

@@ -77,8 +77,9 @@ def _draw_scene(original: Recording, constrained: Recording, metrics: AllMetrics
     axes.set(xlim=(0, image.shape[1]), ylim=(image.shape[0], 0))
     axes.axis("off")
     before, after = (f"{100 * (metrics[case]['distance_new'] or 0.0):.1f}" for case in ("original", "constrained"))
-    style.title(figure, f"From arm to new box: {before} cm on the learned path, {after} cm on the constrained one")
-    return figure
+    return style.title(
+        figure, f"From arm to new box: {before} cm on the learned path, {after} cm on the constrained one"
+    )
 
 
 def _pixels(points: Array, shape: tuple[int, ...]) -> Array:
@@ -109,5 +110,4 @@ def _draw_run(run: Recording, numbers: Metrics) -> Drawing:
     else:
         least = style.at_least(min(closest.values()), 1)
         text = f"On the constrained path the whole arm clears the boxes by {least} cm or more"
-    style.title(figure, text)
-    return figure
+    return style.title(figure, text)

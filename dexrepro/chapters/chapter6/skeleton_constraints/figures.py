@@ -125,8 +125,7 @@ def _draw_person(run: Recording, settings: Config) -> Drawing:
     spot = joints[0][:, 2].mean(axis=0)[[0, 2]]
     grid[0].annotate(f"{s.box_length:g}", spot, xytext=(0, -2), textcoords="offset points", fontsize=6.5, ha="center")
     grid[0].set_ylabel("z [cm]")
-    style.title(figure, f"A synthetic person carries a box of {settings.skeleton.box_length:g} cm")
-    return figure
+    return style.title(figure, f"A synthetic person carries a box of {settings.skeleton.box_length:g} cm")
 
 
 def _draw_spread(run: Recording, numbers: Metrics) -> Drawing:
@@ -149,8 +148,7 @@ def _draw_spread(run: Recording, numbers: Metrics) -> Drawing:
     grid[3].set_ylabel("95th percentile [cm]")
     style.panel(grid[3], "d", "three groups")
     ratio = f"{numbers['spread_ratio_low']:.1f} to {numbers['spread_ratio_high']:.1f}"
-    style.title(figure, f"With the noise that we chose the wrists spread {ratio} times as far as the shoulders")
-    return figure
+    return style.title(figure, f"With the noise that we chose the wrists spread {ratio} times as far as the shoulders")
 
 
 def _draw_stages(run: Recording) -> Drawing:
@@ -166,8 +164,7 @@ def _draw_stages(run: Recording) -> Drawing:
             ends = {"patchA": before.get_bbox_patch(), "patchB": box.get_bbox_patch(), "shrinkA": 1, "shrinkB": 1}
             axes.annotate("", (x, 0.5), before.get_position(), arrowprops={"arrowstyle": "->", "lw": 0.8, **ends})
         before = box
-    style.title(figure, "Lengths are restored outwards, then the hands, then lengths inwards")
-    return figure
+    return style.title(figure, "Lengths are restored outwards, then the hands, then lengths inwards")
 
 
 def _draw_paths(run: Recording, settings: Config) -> Drawing:
@@ -196,8 +193,7 @@ def _draw_paths(run: Recording, settings: Config) -> Drawing:
     moved = np.linalg.norm(joints - original, axis=-1).max(axis=0)
     shoulder, elbow, wrist = moved.max(axis=0)
     text = f"elbows by up to {elbow:.0f} cm, wrists by {wrist:.0f} cm, shoulders by {shoulder:.0f} cm"
-    style.title(figure, f"The constraints move {text}")
-    return figure
+    return style.title(figure, f"The constraints move {text}")
 
 
 def _draw_lengths(run: Recording, numbers: Metrics, settings: Config) -> Drawing:
@@ -216,10 +212,9 @@ def _draw_lengths(run: Recording, numbers: Metrics, settings: Config) -> Drawing
     panels[1].legend(loc="upper right")
     kept, lost = numbers["length_error_constrained"], numbers["length_error_original"]
     within = style.at_most(kept or 0.0, 2)
-    style.title(
+    return style.title(
         figure, f"Constrained links keep their length within {within} cm, original ones miss it by up to {lost:.0f} cm"
     )
-    return figure
 
 
 def _draw_hands(run: Recording, numbers: Metrics, settings: Config) -> Drawing:
@@ -233,5 +228,6 @@ def _draw_hands(run: Recording, numbers: Metrics, settings: Config) -> Drawing:
     before, after = (
         [numbers[f"hands_{kind}_{end}"] for end in ("low", "high")] for kind in ("original", "constrained")
     )
-    style.title(figure, f"Hands: {before[0]:.0f} to {before[1]:.0f} cm becomes\n{after[0]:.1f} to {after[1]:.1f} cm")
-    return figure
+    return style.title(
+        figure, f"Hands: {before[0]:.0f} to {before[1]:.0f} cm becomes\n{after[0]:.1f} to {after[1]:.1f} cm"
+    )

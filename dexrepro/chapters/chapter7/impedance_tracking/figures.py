@@ -51,8 +51,7 @@ def draw_pictures(recording: Recording) -> Drawing:
     for (letter, instant), panel in zip(PICTURES.items(), axes.flat):
         style.photo(panel, images[letter])
         style.panel(panel, letter, f"{words.get(letter, 'transport')}, {instant:g} s")
-    style.title(figure, "The arm carries the cube past the stack (simulated)")
-    return figure
+    return style.title(figure, "The arm carries the cube past the stack (simulated)")
 
 
 def draw_tracking(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> Drawing:
@@ -92,8 +91,7 @@ def draw_tracking(recordings: Recordings, metrics: Mapping[str, Any], config: Co
     style.panel(side, "e", "height")
     style.panel(error, "f", "error of the tip")
     found = 1e3 * metrics["muscle"]["rms_error"]
-    style.title(figure, f"The tip follows the plan to {found:.1f} µm although gripper and cube are unmodelled")
-    return figure
+    return style.title(figure, f"The tip follows the plan to {found:.1f} µm although gripper and cube are unmodelled")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

@@ -105,12 +105,11 @@ def draw_paths(recordings: Recordings, metrics: Mapping[str, Any], config: Confi
     looks |= {"learned": style.LINES["book"], "printed sign": style.LINES["printed"], **pictures.DIRECTIONS}
     style.legend_below(figure, looks)
     low, tall = ([metrics["corrected"][f"separation_{d}_{h}"] for d in ("far", "close")] for h in ("low", "tall"))
-    style.title(
+    return style.title(
         figure,
         f"Forward and right are {style.at_least(min(low), 1)} deviations or more apart at a low obstacle, "
         f"{style.at_most(max(tall), 1)} or less at a tall one (simulated)",
     )
-    return figure
 
 
 def progress(axes: Any, time: np.ndarray, paths: np.ndarray, reach: skills.Reach, **line: Any) -> None:
@@ -142,12 +141,11 @@ def draw_stiffness(recording: Recording, found: Mapping[str, Any], config: Confi
     for panel in axes[:, 0]:
         panel.set_ylabel("Stiffness $X^{stf}$ [-]")
     earlier = min(found[f"half_rise_far_{height}"] - found[f"half_rise_close_{height}"] for height in ("low", "tall"))
-    style.title(
+    return style.title(
         figure,
         f"Built in: stiffness ends {found['final_ratio']:.1f} times higher for a tall obstacle and rises "
         f"{style.at_least(earlier, 1)} s earlier for a close one",
     )
-    return figure
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

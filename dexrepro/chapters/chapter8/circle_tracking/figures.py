@@ -98,12 +98,11 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Drawing:
     figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     ratio = metrics["summary"]["ratio_tuned_x"] if "summary" in metrics else float("nan")
     unit = metrics["summary"]["ratio_unit_x"] if "summary" in metrics else float("nan")
-    style.title(
+    return style.title(
         figure,
         f"Error of FNN over that of BFNN in x, {config.settled:g} to {config.early:g} s: {unit:.3f} as printed, "
         f"{ratio:.2f} with tuned rates",
     )
-    return figure
 
 
 def _draw_nodes(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -125,8 +124,7 @@ def _draw_nodes(recordings: Recordings, metrics: Any, config: Config) -> Drawing
     row[0].set(ylabel="Number of nodes [-]", ylim=(0, None))
     totals = [int(metrics[case]["nodes"]) for case in THRESHOLDS]
     grid = f" against {metrics['fuzzy']['nodes']:.0f} on the grid" if "fuzzy" in metrics else ""
-    style.title(figure, f"Smaller thresholds, more nodes: {totals[0]}, {totals[1]} and {totals[2]}{grid}")
-    return figure
+    return style.title(figure, f"Smaller thresholds, more nodes: {totals[0]}, {totals[1]} and {totals[2]}{grid}")
 
 
 def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -161,8 +159,9 @@ def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) 
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=6)
     errors = "; ".join(f"{label} {metrics[case]['early_x']:.2g}" for case, (label, _) in lines.items())
-    style.title(figure, f"RMS error in x under friction, {config.settled:g} to {config.early:g} s [mm]: {errors}")
-    return figure
+    return style.title(
+        figure, f"RMS error in x under friction, {config.settled:g} to {config.early:g} s [mm]: {errors}"
+    )
 
 
 def _draw_centres(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -178,8 +177,7 @@ def _draw_centres(recordings: Recordings, metrics: AllMetrics, config: Config) -
         axes.set(xlabel="$x$ [m]", aspect="equal")
     row[0].set_ylabel("$y$ [m]")
     row[0].annotate("grid of FNN", (0.2, 0.2), (0.2, 0.215), fontsize=7, color=style.RIVAL, ha="center")
-    style.title(figure, "The broad network puts its nodes where the arm goes")
-    return figure
+    return style.title(figure, "The broad network puts its nodes where the arm goes")
 
 
 def _draw_gains(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -220,8 +218,7 @@ def _draw_gains(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
         f"{name} {metrics[case]['early_x']:.3f}/{metrics[case]['early_y']:.3f}"
         for case, name in (("broad", "BFNN"), ("fuzzy_matched", "FNN"), ("node", "one node"))
     )
-    style.title(figure, f"Error x/y [mm] at equal gain: {errors}")
-    return figure
+    return style.title(figure, f"Error x/y [mm] at equal gain: {errors}")
 
 
 _TUNED, _FRICTION = ("broad", "fuzzy"), ("friction_broad", "friction_fuzzy")

@@ -83,12 +83,11 @@ def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) 
         style.photo(axes, image[round(top * len(image)) : round((top + 0.78) * len(image))])
         pressed = depth[np.abs(run.time - instant).argmin()]
         axes.set_title(f"{instant:g} s" + (f": {pressed:.0f} mm deep" if pressed else ""))
-    style.title(
+    return style.title(
         figure,
         f"The simulated arm presses the sponge {values['peak_compression']:.0f} mm deep while it learns, "
         f"{values['final_compression']:.0f} mm in the end",
     )
-    return figure
 
 
 def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -136,10 +135,9 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     figure.legend(*depth.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     less = metrics["lqr"]["final_compression"] - metrics["learned"]["final_compression"]
     more = metrics["learned"]["peak_compression"] - metrics["lqr"]["peak_compression"]
-    style.title(
+    return style.title(
         figure, f"The learned law presses {less:+.1f} mm less than the regulator in the end, {more:+.1f} mm more before"
     )
-    return figure
 
 
 def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -155,8 +153,7 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
         drawings.phases(axes, learned)
     row[0].legend(loc="lower left", bbox_to_anchor=(0.0, 0.14), fontsize=6.5)
     found, best = steps.iloc[-1].next_x, steps.iloc[-1].optimal_x
-    style.title(figure, f"The gain settles at {found:.1f} N/m, the optimum is {best:.1f} N/m".replace("-", "−"))
-    return figure
+    return style.title(figure, f"The gain settles at {found:.1f} N/m, the optimum is {best:.1f} N/m".replace("-", "−"))
 
 
 def _draw_stiffness(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -186,8 +183,7 @@ def _draw_stiffness(recordings: Recordings, metrics: Any, config: Config) -> Dra
     axes.set_xticks([100, 200, 500, 1000], ["100", "200", "500", "1000"])
     axes.minorticks_off()
     axes.legend(loc="lower left")
-    style.title(figure, f"Below {crossing:.0f} N/m the learned law presses more")
-    return figure
+    return style.title(figure, f"Below {crossing:.0f} N/m the learned law presses more")
 
 
 _BASE = ("learned", "lqr")

@@ -102,8 +102,7 @@ def _draw_transfer(recordings: Recordings, metrics: AllMetrics, config: Config) 
     row[0].set(xlabel="$t/T_s$ [-]", ylabel="$K'/K^*$ [-]")
     row[1].set(xlabel="$t/T_s$ [-]", ylabel="$T_s\\,\\dot K' / (K^* - K_0)$ [-]")
     row[0].legend(loc="lower left", bbox_to_anchor=(0.08, 0.06))
-    style.title(figure, f"The gain moves along half a sine, at most at {rate.max():.1f} times the mean rate")
-    return figure
+    return style.title(figure, f"The gain moves along half a sine, at most at {rate.max():.1f} times the mean rate")
 
 
 def _draw_scene(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -124,8 +123,7 @@ def _draw_scene(recordings: Recordings, metrics: Any, config: Config) -> Drawing
         axes.plot(*np.array([(0, 0), elbow, tip]).T, marker="o", markersize=4, label=name, **style.LINES[line])
     axes.set(xlabel="$x$ [m]", ylabel="$y$ [m]", aspect="equal", xlim=(-0.13, 0.33), ylim=(-0.02, 0.42))
     axes.legend(loc="upper left", fontsize=6.5)
-    style.title(figure, f"The arm meets the object at {surface:g} m")
-    return figure
+    return style.title(figure, f"The arm meets the object at {surface:g} m")
 
 
 def _draw_contact(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -160,12 +158,11 @@ def _draw_contact(recordings: Recordings, metrics: Any, config: Config) -> Drawi
         axes.set_xlim(start, end)
     figure.legend(*place.get_legend_handles_labels(), loc="outside lower center", ncols=6)
     soft_rate, abrupt_rate = (metrics[case]["force_rate"] for case in ("soft", "abrupt"))
-    style.title(
+    return style.title(
         figure,
         f"The measured force changes at {style.at_most(soft_rate, 2)} N/s at most with the soft change, at up to "
         f"{abrupt_rate:.1f} N/s with the abrupt one",
     )
-    return figure
 
 
 def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -191,10 +188,9 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
     style.panel(grid[0, 0], "a", "Gain in use")
     style.panel(grid[0, 1], "b", "Iterates of the policy iteration")
     digits, seconds = metrics["soft"]["digits"], np.ptp(soft.time[soft["phase"] == EXPLORING])
-    style.title(
+    return style.title(
         figure, f"{len(steps)} iterations on {seconds:.0f} s of contact find the optimum to {digits:.1f} digits"
     )
-    return figure
 
 
 def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
@@ -229,11 +225,10 @@ def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawi
     for letter, axes, name in zip("abc", row, ("Learned; dashed: optimum", "Distance from it", "Under sensor noise")):
         style.panel(axes, letter, name)
     worst = 100.0 * (metrics.get("summary", {}).get("worst_gain_error") or float("nan"))
-    style.title(
+    return style.title(
         figure,
         f"The learned gain is optimal within {style.at_most(worst, 1)} % for {stiffness[0]:g} to {stiffness[-1]:g} N/m",
     )
-    return figure
 
 
 _STATIC = ("static_soft", "static_abrupt")

@@ -4,6 +4,7 @@ from dexrepro.experiment import Figure
 
 FIGURES = {"90.10": Figure("simulated decay", "a falling curve")}
 TABLES = {"T90.1": "final values"}
+UNITS = {"x": "m"}
 
 
 def draw(recordings, metrics, config):
