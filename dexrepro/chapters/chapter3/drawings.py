@@ -63,22 +63,36 @@ def steps(recording: Recording, config: Config) -> Drawing:
 
 
 def orientation(recording: Recording, config: Config) -> Drawing:
-    """Fig. 3.2 from a recorded instant half-way to the opening."""
+    """Fig. 3.2 from a recorded instant half-way to the opening, in the plane of both tool axes."""
+    from dexrepro.report import style
+
     index = int(np.abs(recording.time - config.phases[0] / 2).argmin())
     tip, rotation = forward(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])
     centre, target = np.array(config.centre), np.array(config.target)
-    wanted = tool_axis(centre, centre, target, config.lever)
-    figure, axes = _space(style)
-    length = 0.22
-    axes.plot(*np.stack((tip - length * rotation[:, 2], tip)).T, **style.LINES["book"])
-    axes.plot(*np.stack((tip - length * wanted, tip)).T, **style.LINES["reference"])
-    axes.plot(*np.stack((centre, target)).T, color=style.PLAIN, linewidth=0.8)
-    axes.text(*(tip - length * rotation[:, 2] + (0.02, 0.0, 0.0)), "actual tool axis", fontsize=7, color=style.BOOK)
-    axes.text(*(tip - length * wanted), "final desired axis  ", fontsize=7, ha="right")
-    axes.text(*(centre + target) / 2, "opening to target  ", fontsize=7, color="#555555", ha="right", va="top")
-    _mark(style, axes, {"$P_R$": centre, "$X_D$": target, "$X_P$": tip})
-    angle = float(np.degrees(np.linalg.norm(tilt(wanted, rotation[:, 2]))))
-    return style.title(figure, f"Half-way to the opening {angle:.0f}° of the turn remain")
+    wanted, actual = tool_axis(centre, centre, target, config.lever), rotation[:, 2]
+    across = actual - (actual @ wanted) * wanted
+    plane = np.stack((wanted, -across / np.linalg.norm(across)))
+    angle = float(np.linalg.norm(tilt(wanted, actual)))
+    figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.3)
+    length = 1e3 * config.gripper or 150.0
+    for axis, line, text in ((actual, "book", "actual axis"), (wanted, "reference", "desired axis $q_D$")):
+        end = -length * (plane @ axis)
+        axes.plot(*np.stack((end, (0.0, 0.0))).T, label=text, **style.LINES[line])
+    turn = np.linspace(0.0, angle, 60)
+    arc = 0.7 * length * np.stack((-np.cos(turn), np.sin(turn)))
+    axes.plot(*arc, color=style.RIVAL, linewidth=1.2)
+    text = rf"$\omega$ = {np.degrees(angle):.0f}°"
+    axes.annotate(text, arc[:, 30], (-5, 0), textcoords="offset points", ha="right", va="center", color=style.RIVAL)
+    for name, point in {"$X_P$": tip, "$P_R$": centre, "$X_D$": target}.items():
+        place = 1e3 * (plane @ (point - tip))
+        axes.plot(*place, "o", color="#222222", markersize=4)
+        axes.annotate(name, place, (0, -5), textcoords="offset points", ha="center", va="top")
+    way = 1e3 * (plane @ np.stack((centre - tip, target - tip)).T)
+    axes.plot(*way, color=style.PLAIN, linewidth=0.8, label="opening to target")
+    axes.set(xlabel="Along the desired axis [mm]", ylabel="Across it [mm]", aspect="equal")
+    axes.margins(0.2, 0.45)
+    figure.legend(loc="outside lower center", ncols=2)
+    return style.title(figure, f"Half-way to the opening {np.degrees(angle):.0f}° of the turn remain")
 
 
 def shortest_distance(recording: Recording, config: Config) -> Drawing:

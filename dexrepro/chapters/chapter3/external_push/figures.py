@@ -20,9 +20,10 @@ FIGURES = {
         "The observer's response is that of a first-order lag with the time constant 1/K.",
     ),
     "3.11": Figure(
-        "External joint torque, true (dashed) and observed, of the three joints it loads most, and Dis_R, "
-        "during a push "
-        "of 30 N along +y on the middle of the forearm in reach 1. Simulated; box and lid do not touch the arm here.",
+        "Force on the forearm, the external torque of the three joints it loads most (pale and wide: true; thin: "
+        "observed; two of the true ones coincide), with the nominal model and with an exact one, and Dis_R, during a "
+        "push of {external_push.push.force.1:g} N along y in reach 1. Simulated; the arm may touch box and lid, and "
+        "does not. The book plots force, torque and distance.",
         "The observed torque follows the true one with a small lag and the offset of the model's error.",
     ),
     "3.12": Figure(
@@ -38,7 +39,7 @@ FIGURES = {
 }
 TABLES = {"T3.B": "Push: laws, models and directions", "T3.C": "Observer gain: lag and relative error"}
 FILM = Film(
-    "plus", "A push of 30 N on the forearm moves the arm by millimetres; it returns when let go.", FILMED,
+    "plus", "A push on the forearm moves the arm by millimetres; it returns when let go.", FILMED,
     "rcm_distance", "Dis_R [mm]", scale=1e3, span=(4.0, 9.5),
 )  # fmt: skip
 JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
@@ -73,23 +74,33 @@ def _draw_steps() -> Drawing:
 
 def _draw_torques(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     recording, push = recordings["plus"], config.cases["plus"].push
-    figure, (top, middle, bottom) = style.subplots(3, 1, height=5.0, sharex=True)
+    figure, (force, top, middle, bottom) = style.subplots(4, 1, height=6.0, sharex=True, height_ratios=(1, 2, 2, 1.4))
+    force.plot(recording.time, recording["push.y"], **style.LINES["reference"])
+    force.set_ylabel("$F_y$ [N]")
     busiest = np.abs(recording["external"]).max(axis=0).argsort()[::-1][:3]
-    for axes, case, name in ((top, "plus", "10 % error in masses"), (middle, "exact_plus", "exact masses")):
+    error = config.cases["plus"].model.mass_error
+    for axes, case in ((top, "plus"), (middle, "exact_plus")):
         run = recordings.get(case, recording)
         for joint, line in zip(sorted(busiest), ("book", "rival", "extra1")):
-            axes.plot(run.time, run["observed"][:, joint], label=f"{JOINTS[joint]} observed", **style.LINES[line])
-            axes.plot(run.time, run["external"][:, joint], label="true", **style.LINES["reference"])
+            wide = {"color": style.LINES[line]["color"], "linewidth": 4.0, "alpha": 0.3}
+            axes.plot(run.time, run["external"][:, joint], **wide)
+            axes.plot(run.time, run["observed"][:, joint], label=JOINTS[joint], **style.LINES[line])
         axes.set_ylabel(r"$\tau_{Ex}$ [N m]")
-        axes.set_title(f"model with {name}")
-    handles, labels = top.get_legend_handles_labels()
-    once = dict(sorted(zip(labels, handles), key=lambda named: named[0] == "true"))
-    top.legend(once.values(), once, loc="upper right")
     bottom.plot(recording.time, 1e3 * recording["rcm_distance"], **style.LINES["book"])
+    top.legend(loc="upper right", title="joint")
     shown = (push.start - 1, push.start + push.duration + 2.1)
-    bottom.set(xlabel="Time [s]", ylabel="$Dis_R$ [mm]", ylim=(0, 12), xlim=shown)
-    for axes in (top, middle, bottom):
-        style.phase(axes, push.start, push.start + push.duration, "push" if axes is bottom else "")
+    bottom.set(xlabel="Time [s]", ylabel="$Dis_R$ [mm]", xlim=shown)
+    bottom.set_ylim(0, 1.2e3 * recording["rcm_distance"][recording.between(shown[0])].max())
+    force.margins(y=0.35)
+    for axes in (force, top, middle, bottom):
+        style.phase(axes, push.start, push.start + push.duration, "push" if axes is force else "")
+    for axes, letter, text in (
+        (force, "a", "force on the forearm"),
+        (top, "b", f"external torque, model with {abs(error):.0%} error in masses (pale: true)"),
+        (middle, "c", "external torque, model with exact masses"),
+        (bottom, "d", "distance of the arm to the remote centre"),
+    ):
+        style.panel(axes, letter, text)
     errors = [100 * metrics[case]["observer_error"] for case in ("plus", "exact_plus") if case in metrics]
     found = f", with an exact model by {errors[1]:.0f} %" if len(errors) > 1 else ""
     return style.title(figure, f"The observed torque errs by {errors[0]:.0f} %, mostly unknown weight{found}")

@@ -16,17 +16,18 @@ from dexrepro.report import style
 from .experiment import REACHES
 
 _REACH = (
-    "Distance of the end point to the target and shortest distance Dis_R of the arm to the remote centre in reach "
-    "{} (the book plots the default alone). Simulated: Baxter's right arm with a 0.15 m gripper, nominal model 10 % "
-    "too light, box and lid as collision bodies. Position-only tasks pass through the lid untouched, so that laws are "
-    "compared and not their collisions. The book's time axes are not printed."
+    "Distance of the end point to the target and shortest distance Dis_R of the arm to the remote centre in reach {} "
+    "(the book plots the default alone). Simulated: Baxter's right arm with a gripper of {{fixed_opening.gripper:g}} "
+    "m, mass error of the nominal model {{fixed_opening.model.mass_error:.0%}}, box and lid as collision bodies. "
+    "Position-only tasks pass through the lid untouched, so that laws are compared and not their collisions. The "
+    "book's time axes are not printed."
 )
 FIGURES = {
     "3.2": Figure(
-        "Tool axis on the way to the opening in reach 1 (simulated): actual axis, desired axis, the angle "
-        "omega between "
-        "them, remote centre and end point. The book shows a sketch.",
-        "The tool axis turns towards the line from the opening to the target.",
+        "Tool axis on the way to the opening in reach 1 (simulated), in the plane of the actual and the desired axis: "
+        "the angle omega between them, end point X_P, and remote centre and target projected onto that plane. The book "
+        "shows a sketch.",
+        "The tool axis turns about the end point towards the line from the opening to the target.",
     ),
     "3.3": Figure(
         "Elbow, wrist, end point, remote centre and the shortest distance Dis_R, half-way to the target in "
@@ -35,7 +36,8 @@ FIGURES = {
         "The shortest distance runs from the opening's centre to the foot point on the arm.",
     ),
     "3.4": Figure(
-        "The simulated workspace: box of 0.5 m x 0.37 m x 0.3 m, lid with a square hole, cube at the target of "
+        "The simulated workspace: box of {fixed_opening.box.size.1:g} m x {fixed_opening.box.size.0:g} m x "
+        "{fixed_opening.box.height:g} m, lid with a square hole, cube at the target of "
         "reach 1. "
         "The book shows a photograph.",
         "A box with a hole in its lid in front of the robot's right arm.",

@@ -16,8 +16,8 @@ FIGURES = {
     "4.3": Figure(
         "Above: the switching function E of one input component for both readings of the square in (4.26) and several "
         "omega; E must not exceed 1. Below: E and the largest input component while the two-link arm draws the ellipse "
-        "from an empty network (threshold 20), and its error with and without the robust term. The book sketches the "
-        "three regions.",
+        "from an empty network (threshold 20, a dot a recorded sample), and its error with and without the robust "
+        "term. The book sketches the three regions.",
         "The switch hands over to the robust term only in the transient, and stays below 1 with the square inside.",
     )
 }
@@ -41,7 +41,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         axes.axhline(1, color="#999999", linewidth=0.6)
         for value, word in ((inner, "$d_a$"), (outer, "$d_b$")):
             style.event(axes, value, word)
-        axes.set(xlabel=r"$|\Xi_k|$ [-]", ylabel="E [-]", ylim=(0, 3.7), title=text)
+        highest = max(float(line.get_ydata().max()) for line in axes.get_lines()[: len(lines)])
+        axes.set(xlabel=r"$|\Xi_k|$ [-]", ylabel="E [-]", ylim=(0, 1.4 * highest), title=text)
     inside.legend(loc="upper left", bbox_to_anchor=(0.29, 1.04), ncols=2, handlelength=1.8, columnspacing=0.8)
     if "base" in recordings:
         _draw_run(recordings, share, error)
@@ -58,7 +59,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 def _draw_run(recordings: Recordings, share: Any, error: Any) -> None:
     base = recordings["base"]
     now = base.time <= 3.0
-    share.plot(base.time[now], base["share"][now], **style.LINES["book"])
+    share.plot(base.time[now], base["share"][now], marker=".", markersize=2.5, **style.LINES["book"])
     share.set(xlabel="Time [s]", ylabel="E [-]", ylim=(-0.05, 1.1), title="in the run")
     twin = share.twinx()
     twin.plot(base.time[now], base["input_peak"][now], **style.LINES["rival"])

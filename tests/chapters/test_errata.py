@@ -1,0 +1,49 @@
+"""What the switch of an erratum does: it selects the printed form of what the erratum is about, and nothing else."""
+
+from __future__ import annotations
+
+import shlex
+from typing import Any
+
+import pytest
+
+from dexrepro import chapters
+from dexrepro.checks import leaves
+from dexrepro.claims import Erratum
+from dexrepro.config import compose_chapter, experiment_cases
+
+SWITCHED = [
+    (number, erratum) for number in ("1", "2", "3", "4") for erratum in chapters.load(number).errata if erratum.switch
+]
+
+
+def resolved(number: str, overrides: list[str]) -> dict[str, Any]:
+    """Every value of every case: "experiment.case.key" -> value."""
+    composed = compose_chapter(number, overrides)
+    return {
+        f"{experiment.name}.{case}.{key}": value
+        for experiment in chapters.load(number).experiments
+        for case, values in experiment_cases(composed, experiment.name).items()
+        for key, value in leaves(values)
+    }
+
+
+@pytest.fixture(scope="module")
+def shipped() -> dict[str, dict[str, Any]]:
+    return {number: resolved(number, []) for number in {number for number, _ in SWITCHED}}
+
+
+@pytest.mark.parametrize(("number", "erratum"), SWITCHED, ids=lambda value: getattr(value, "id", value))
+def test_a_switch_changes_the_keys_it_names_alone(
+    number: str, erratum: Erratum, shipped: dict[str, dict[str, Any]]
+) -> None:
+    words = shlex.split(erratum.switch)
+    keys = {word.lstrip("+").partition("=")[0] for word in words}
+    now, before = resolved(number, words), shipped[number]
+    changed = {name for name in now.keys() | before.keys() if now.get(name) != before.get(name)}
+    assert changed, f"{erratum.switch} changes nothing"
+    parts = {part for key in keys for part in key.split(".")[-1:]}
+    assert not {name for name in changed if not parts & set(name.split(".")[2:])}
+    experiments = {key.partition(".")[0] for key in keys} - {"shared"}
+    reached = {name.partition(".")[0] for name in changed}
+    assert not experiments or experiments <= reached
