@@ -21,6 +21,8 @@ from latex2mathml import converter
 
 from dexrepro import chapters
 from dexrepro.config import config_files
+from dexrepro.errors import InputError
+from dexrepro.storage import read_yaml
 
 _NUMBER = r"\(([1-9]\d?)\.([1-9]\d{0,2})([a-z]?)\)"
 _MENTION = re.compile(rf"{_NUMBER}(?:\s*(?:-|\u2013|\bto\b)\s*{_NUMBER})?")
@@ -50,18 +52,34 @@ def index(folder: Path | None = None) -> list[Mention]:
 
 
 def printed() -> dict[str, tuple[str, str]]:
-    """Every equation of the book: its section, and itself in LaTeX, from the ``equations.yaml`` of each chapter."""
+    """Every equation of the book: its section, and itself in LaTeX, from the ``equations.yaml`` of each chapter.
+
+    Raises InputError where such a file is no map of sections to equations.
+    """
     found: dict[str, tuple[str, str]] = {}
     for number in chapters.numbers():
         path = chapters.load(number).folder / "equations.yaml"
-        sections = yaml.safe_load(path.read_text("utf-8")) if path.exists() else {}
-        found |= {name: (section, latex) for section, texts in sections.items() for name, latex in texts.items()}
+        try:
+            sections = read_yaml(path) if path.exists() else {}
+            new = {name: (section, latex) for section, texts in sections.items() for name, latex in texts.items()}
+        except (OSError, ValueError, TypeError, AttributeError, yaml.YAMLError) as error:
+            reason = " ".join(str(error).split())
+            raise InputError(f"{path} must hold sections, and in each equations by number ({reason})") from error
+        for name, (section, latex) in new.items():
+            if not re.fullmatch(r"\d+\.\d+\w?", str(name)) or not isinstance(latex, str) or not isinstance(name, str):
+                raise InputError(
+                    f"{path}: {section}.{name} = {str(latex)[:40]!r} must be LaTeX under a number as '2.32'"
+                )
+        found |= new
     return found
 
 
 def typeset(latex: str) -> str:
-    """An equation as MathML, "" of none."""
-    return converter.convert(latex.replace("{aligned}", "{align*}"), display="block") if latex else ""
+    """An equation as MathML, "" of none. Raises InputError where it is no LaTeX."""
+    try:
+        return converter.convert(latex.replace("{aligned}", "{align*}"), display="block") if latex else ""
+    except Exception as error:
+        raise InputError(f"the equation {latex[:80]!r} cannot be typeset ({type(error).__name__})") from error
 
 
 def numbers(text: str) -> list[str]:

@@ -318,3 +318,26 @@ def test_a_configuration_that_is_none_is_named(
     status, said = command("run only=decay")
     assert status == 2
     assert sentence in said
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ("'90.1': {'90.1': 1.5}", "90.1.90.1 = '1.5' must be LaTeX under a number as '2.32'"),
+        ("'90.1': {first: x}", "90.1.first = 'x' must be LaTeX"),
+        ("'90.1': {90.1: x}", "90.1.90.1 = 'x' must be LaTeX under a number"),
+        ("'90.1': x", "must hold sections, and in each equations by number"),
+        ("- a", "must hold sections"),
+        ("", "must hold sections"),
+        ("a: [", "must hold sections"),
+        (b"\xff\xfe", "must hold sections"),
+        ("'90.1': {'90.1': '\\frac{'}", "cannot be typeset"),
+    ],
+)
+def test_equations_that_are_none_are_named(
+    toy_result: Path, toy_book: Path, command: Command, content: str | bytes, sentence: str
+) -> None:
+    text("equations.yaml", content)(toy_book / "chapter90")
+    status, said = command("report")
+    assert status == 2
+    assert sentence in " ".join(said.split())
