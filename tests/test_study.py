@@ -245,6 +245,7 @@ def test_a_study_never_becomes_smaller(folder: Path, monkeypatch: pytest.MonkeyP
     path = study.run("90", "decay", 3, RESULTS, workers=1)
     lines, narrower = (RESULTS / "studies/decay.jsonl").read_text(), study.parameters("90", "decay")
     narrower = {key: replace(origin, high=1.0) for key, origin in narrower.items()}
+    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))  # other processes do not know of this:
     monkeypatch.setattr(study, "parameters", lambda *_: narrower)
     with pytest.raises(InputError, match=r"samples = 2 is not allowed: .* holds 3 samples of another configuration"):
         study.run("90", "decay", 2, RESULTS, workers=1)

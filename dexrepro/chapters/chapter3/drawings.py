@@ -64,8 +64,6 @@ def steps(recording: Recording, config: Config) -> Drawing:
 
 def orientation(recording: Recording, config: Config) -> Drawing:
     """Fig. 3.2 from a recorded instant half-way to the opening, in the plane of both tool axes."""
-    from dexrepro.report import style
-
     index = int(np.abs(recording.time - config.phases[0] / 2).argmin())
     tip, rotation = forward(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])
     centre, target = np.array(config.centre), np.array(config.target)

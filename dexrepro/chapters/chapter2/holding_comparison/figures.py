@@ -138,7 +138,6 @@ SETTINGS = {  # NoIm and Im on either trajectory
 
 
 def _draw_settings(metrics: AllMetrics, config: Config) -> Drawing:
-    from dexrepro.report import style
 
     tuned = [case for case, its in config.cases.items() if its.law or gains(its, config) == "tuned"]
     figure, (*panels, right) = style.subplots(1, 3, height=2.9, width_ratios=(5, 3, 3.4))
