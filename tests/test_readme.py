@@ -89,6 +89,8 @@ QUICK = {
     "style_transformation": "features.draws=1 ~{0}.cases +{0}.cases.default={{}}",
     "obstacle_crossing": "features.draws=1 ~{0}.cases +{0}.cases.default={{}}",
     "reaching_demonstrations": "separation_repetitions=10 ~{0}.cases.printed_sign",
+    "reactive_learning": "draws=2 ~{0}.cases.printed_sign",
+    "planar_skill": "demonstrations.count=3 ~{0}.cases.tau_1s",
 }
 
 
@@ -96,15 +98,23 @@ QUICK = {
 def test_own_demonstrations_take_the_place_of_the_synthetic(shell: Shell, tmp_path: Path, command: str) -> None:
     share = np.linspace(0, 1, 100)
     progress, bump = share**3 * (10 - 15 * share + 6 * share**2), np.sin(np.pi * share)
+    down, across = np.r_[progress, np.ones(115)], np.r_[np.zeros(115), progress]  # a pause between
     for name, columns in {
         "my_letter": (2 + np.sin(2 * np.pi * progress), 4 * progress),
         "over_one": (12 * progress - 6, 0 * share, 5 * bump),
         "reach1": (2.3 + 17.7 * progress, 9 * progress, bump**2),
         "reach2": (2.3 + 17.7 * progress, 9 * progress, 2 * bump**2),
+        "left1": (2.3 + 17.7 * progress, 9 * progress + 6 * bump**3, 2 * bump**3),
+        "drawing": (30 - 24 * across, 20 - 12 * down + 0.5 * np.sin(np.pi * across)),
     }.items():
-        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([3 * share, *columns]), delimiter=",")
+        rows = np.column_stack([np.linspace(0, 3, len(columns[0])), *columns])
+        np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",")
+    (tmp_path / "block.csv").write_text("16,6.5\n19,6.5\n19,9\n16,9\n")
     experiment = re.search(r"only=(\w+)", command)[1]
-    done = shell(f"{command} {experiment}.{QUICK[experiment].format(experiment)}", timeout=300)
+    command = f"{command} {experiment}.{QUICK[experiment].format(experiment)}"
+    done = shell(command, timeout=300)
+    if refused := re.search(r"; set (planar_skill\..*)", done.stderr):
+        done = shell(f"{command} {refused[1]}", timeout=300)
     assert done.returncode == 0, done.stderr
     folder = next(tmp_path.glob(f"results/runs/{experiment}-*"))
     assert all(
