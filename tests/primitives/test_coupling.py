@@ -163,3 +163,5 @@ def test_a_surface_pushes_back_in_proportion_and_over_time():
     vertical = dt * (20.0 * -2.0 + 100.0 * -2.0 * dt)
     assert path[1] == pytest.approx([0.0, -0.1 + dt * vertical])
     assert force[1] == pytest.approx(30.0 * (0.1 - dt * vertical))
+    _, force = SurfaceFollower(0.0, 0.0, 5.0).rollout(skill, np.array([0.0, 0.4]), dt, lambda x: 0.0, 30.0)
+    assert force[0] == 0.0, "it does not touch"

@@ -102,3 +102,13 @@ def test_gravity_torque_is_the_slope_of_the_potential_energy(q):
 
     slope = [(potential(q + 1e-6 * e) - potential(q - 1e-6 * e)) / 2e-6 for e in np.eye(3)]
     assert ARM.gravity(q) == pytest.approx(slope, abs=1e-6)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.3])
+def test_rates_are_those_of_the_damped_pseudo_inverse_and_an_approach_is_one_step_of_them(damping):
+    q, velocity = (0.4, 0.9, -0.6), np.array([0.7, -0.2])
+    jacobian = np.array(ARM.jacobian(q))
+    expected = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + damping**2 * np.eye(2), velocity)
+    assert ARM.rates(q, velocity, damping) == pytest.approx(expected)
+    target = np.array(ARM.forward(q)) + velocity
+    assert ARM.approach(q, target, damping) == pytest.approx(np.array(q) + expected)
