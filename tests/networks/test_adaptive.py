@@ -74,7 +74,9 @@ def test_it_reports_nodes_and_the_features_at_its_last_input():
 
 
 def test_a_network_that_forgets_has_no_weights_and_the_nodes_of_its_start():
-    network = AdaptiveNetwork(GrowingGaussians(1, width=2.0, threshold=0.5), outputs=1, gain=1.0, leakage=0.0, step=0.1)
+    network = AdaptiveNetwork(
+        GrowingGaussians(1, width=2.0, threshold=0.5, enhanced=False), outputs=1, gain=1.0, leakage=0.0, step=0.1
+    )
     for z in ([0.0], [1.0], [3.0]):
         network.output(z, grow=True)
         network.adapt(np.array([1.0]))
