@@ -71,3 +71,19 @@ def test_it_reports_nodes_and_the_features_at_its_last_input():
     assert network.diagnostics() == pytest.approx({"nodes": 2, "feature_energy": 2 * share**2, "activation": share})
     network.output([2.0])
     assert network.diagnostics()["activation"] == pytest.approx(np.exp(-1.0)), "the largest"
+
+
+def test_a_network_that_forgets_has_no_weights_and_the_nodes_of_its_start():
+    network = AdaptiveNetwork(
+        GrowingGaussians(1, width=2.0, threshold=0.5, enhanced=False), outputs=1, gain=1.0, leakage=0.0, step=0.1
+    )
+    for z in ([0.0], [1.0], [3.0]):
+        network.output(z, grow=True)
+        network.adapt(np.array([1.0]))
+    assert network.nodes == 3
+    network.forget()
+    assert network.nodes == 0
+    assert network.output([5.0]).tolist() == [0.0]
+    assert network.features == pytest.approx([1.0])
+    assert network.output([6.0]).tolist() == [0.0]
+    assert network.features == pytest.approx([np.exp(-0.25)]), "exp(-|z - c|^2 / width^2)"
