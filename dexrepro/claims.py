@@ -164,6 +164,7 @@ class Claim:
         was searched before it stands.
     by_construction: the generator that has the effect built in. not_testable: why nothing can be measured.
     note: what a reader must know beside the verdict; ``{experiment.case.metric:.3g}`` in it is filled from the run.
+    beside: what another experiment of the chapter shows of it, filled likewise where that was run, else left out.
     """
 
     id: str
@@ -181,6 +182,7 @@ class Claim:
     not_testable: str = ""
     note: str = ""
     where: str = ""
+    beside: str = ""
 
     def __post_init__(self) -> None:
         if (self.predicate is None) != bool(self.not_testable):
@@ -232,7 +234,7 @@ class Claim:
             searched=self.searched,
             by_construction=self.by_construction,
             reason=self.not_testable,
-            note=_filled(self.note, metrics),
+            note=filled(self.note, metrics),
         )
 
     def _verdict(
@@ -260,7 +262,7 @@ class Claim:
         return AFTER_CORRECTION if printed is not None and not printed > 0 else REPRODUCED
 
 
-def _filled(text: str, metrics: Metrics) -> str:
+def filled(text: str, metrics: Metrics) -> str:
     """A text whose ``{experiment.case.metric:format}`` are replaced by the run's numbers ("?" where absent)."""
 
     def number(match: re.Match[str]) -> str:

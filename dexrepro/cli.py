@@ -127,6 +127,7 @@ def _parser() -> argparse.ArgumentParser:
 
     study = commands.add_parser("study", parents=[selection], help="how often claims hold when the unprinted varies")
     study.add_argument("--update", action="store_true", help="renew the study that is shipped")
+    study.add_argument("--confirm", action="store_true", help="carry samples over a change of code: two run again")
     study.set_defaults(function=study_command)
 
     render = commands.add_parser("render", parents=[selection], help="animate recorded runs (case=NAME format=gif|mp4)")
@@ -486,6 +487,11 @@ def study_command(options: argparse.Namespace) -> int:
     samples, hours = _samples(values.get("samples")), _hours(values.get("hours"))
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
+            if options.confirm:
+                carried, other = study.confirm(number, name, results, options.update)
+                differ = f"; other numbers than before: {', '.join(other)}" if other else ""
+                out.print(f"{name}: {carried} cases of samples carried over{differ}", markup=False)
+                continue
             try:
                 path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update)
             except study.SamplesFailed as error:
@@ -527,7 +533,7 @@ def _study_jobs(options: argparse.Namespace) -> int:
     results = [text for text in words if text.startswith("results=")]
     status = _launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
     if options.update and status == OK:
-        return study_command(argparse.Namespace(selection=words, update=True))
+        return study_command(argparse.Namespace(selection=words, update=True, confirm=False))
     for name in names:
         if (path := study.summary_file(name, folder)).exists():
             _print_study(name, path, folder)
@@ -538,7 +544,7 @@ def _study_job(config: Any) -> None:
     from dexrepro.sweep import JobFailed, enter_launch_folder
 
     enter_launch_folder()
-    if study_command(argparse.Namespace(selection=["workers=1", *config.selection], update=False)) != OK:
+    if study_command(argparse.Namespace(selection=["workers=1", *config.selection], update=False, confirm=False)) != OK:
         raise JobFailed("a process was killed; the same command completes what is missing")
 
 

@@ -166,7 +166,8 @@ def _plan(
     if differs:
         label = block["name"] if chapter == chapters.OWN else name
         folder = results / "runs" / f"{label}-{digest_of([cases, seed])[:10]}"
-    experiment, versions = chapters.load(chapter).experiment(name), [version(package) for package in NUMERICAL]
+    experiment = chapters.load(chapter).experiment(name)
+    versions = [version(package) for package in (*NUMERICAL, *experiment.requires)]
     jobs = []
     for case, values in cases.items():
         values = {**values, "perturbation": perturbation, "seed": seed, "case": case}

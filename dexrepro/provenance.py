@@ -6,6 +6,7 @@ Provenance: each leaf of conf/chapter/N/EXPERIMENT.yaml says on its line where i
     rest_length: 0.55   # m | chosen: equals the printed initial estimate | 0.5..0.65
     rate: 30   # 1/s | derived: sqrt of stiffness over mass
     motion: ramp   # - | printed 1.5.1 | one of ramp, sine
+    inertia_about: centre   # - | chosen: the text leaves it open | drawn from centre, joint
 
 The book's symbol, where it has one, stands before the unit, which is then in brackets.
 """
@@ -26,7 +27,8 @@ from dexrepro.config import compose_chapter, config_files, resolved_block
 class Provenance:
     """Where a parameter comes from: unit, kind (printed, chosen or derived), text, and the range worth varying.
 
-    words: those that a parameter which is a word may take ("| one of ramp, sine"; "| any" leaves it free).
+    words: those that a parameter which is a word may take ("| one of ramp, sine"; "| any" leaves it free). drawn: each
+    of them is as good a reading of the book, so a study draws among them ("| drawn from centre, joint").
     symbol: the book's, in plain letters: ``lambda_1``, ``khat_o(0)``, ``rho_{1,0}``; None where it has none.
     """
 
@@ -37,13 +39,15 @@ class Provenance:
     high: float | None = None
     symbol: str | None = None
     words: tuple[str, ...] = ()
+    drawn: bool = False
 
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _COMMENT = re.compile(
     r"^(?:(?P<symbol>[^|\[]+?)\s*\[)?(?P<unit>[^|\]]*?)\]?\s*"
     r"\|\s*(?P<kind>printed|chosen|derived)\b:?\s*(?P<text>[^|]*?)\s*"
-    rf"(?:\|\s*(?:(?P<low>{_NUMBER})\s*\.\.\s*(?P<high>{_NUMBER})|one of (?P<words>[\w, ]+)|any)\s*)?$"
+    rf"(?:\|\s*(?:(?P<low>{_NUMBER})\s*\.\.\s*(?P<high>{_NUMBER})"
+    r"|(?P<one>one of|drawn from) (?P<words>[\w, ]+)|any)\s*)?$"
 )
 _LINE = re.compile(r"^(?P<indent> *)(?P<key>[\w.\-]+|'[^']+'|\"[^\"]+\"):(?:\s+(?P<rest>.*))?$")
 
@@ -62,6 +66,7 @@ def parse_provenance(comment: str) -> Provenance | None:
         float(high) if high else None,
         match["symbol"],
         tuple(word.strip() for word in (match["words"] or "").split(",") if word.strip()),
+        match["one"] == "drawn from",
     )
 
 

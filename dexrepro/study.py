@@ -3,7 +3,8 @@
 A sample draws every ranged parameter of an experiment, and the seed: scrambled Sobol points cover the ranges evenly. It
 keeps the *metrics* of the cases, each with the key of its simulation, so that claims, controls and printed forms are
 evaluated from samples made earlier: rewording a claim costs nothing, a new case costs that case alone, and only a
-changed simulation runs again. A study looks at 16, 40 and 100 samples and ends when all its claims are decided.
+changed simulation runs again; ``confirm`` carries samples over a change of code that changed no number. A study looks
+at 16, 40 and 100 samples and ends when all its claims are decided.
 
 Samples are kept one a line beside the summary; the same study may be started any number of times, on any machine that
 shares the results folder: its processes share the samples.
@@ -25,7 +26,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from dexrepro import chapters
+from dexrepro import baselines, chapters
 from dexrepro.arrays import Array
 from dexrepro.baselines import baseline_dir
 from dexrepro.case import live
@@ -66,7 +67,7 @@ QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the margin, in a summary
 
 @cache
 def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
-    """Parameters with a declared range that an experiment uses: its own, and the shared ones it refers to.
+    """Parameters that an experiment uses, its own and the shared ones it refers to, with a range or words to draw from.
 
     A list of numbers is varied element by element, under the keys ``list.0``, ``list.1``, ...
     """
@@ -76,9 +77,10 @@ def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
     for key, origin in provenance(chapter).items():
         own = key.startswith(f"{experiment}.") and ".cases." not in key
         shared = any(key == name or key.startswith(f"{name}.") for name in referred)
-        if origin.low is not None and (own or shared):
+        if (origin.low is not None or origin.drawn) and (own or shared):
             for place, value in leaves(_get(composed, key)):
-                if isinstance(value, int | float) and not isinstance(value, bool):
+                number = isinstance(value, int | float) and not isinstance(value, bool)
+                if value in origin.words if origin.drawn else number:
                     found[f"{key}.{place}".rstrip(".")] = origin
     return found
 
@@ -97,16 +99,18 @@ def _references(composed: Mapping[str, Any], node: Any) -> set[str]:
 @cache
 def _points(experiment: str, dimensions: int) -> Array:
     """Scrambled Sobol points in the unit cube, one a sample."""
-    return stats.qmc.Sobol(dimensions, seed=zlib.crc32(experiment.encode())).random(1024)
+    return stats.qmc.Sobol(max(dimensions, 1), seed=zlib.crc32(experiment.encode())).random(1024)
 
 
-def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float], dict[str, Any]]:
+def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float | str], dict[str, Any]]:
     """Sample number ``index``: the values drawn, and under them the experiment's block with all its ``cases``."""
     composed = compose_chapter(chapter)
     varied = parameters(chapter, experiment)
-    point = _points(experiment, len(varied) + 1)[index]
-    values: dict[str, float] = {}
-    for share, (key, origin) in zip(point, varied.items(), strict=False):
+    numbers = {key: origin for key, origin in varied.items() if not origin.drawn}
+    words = {key: origin for key, origin in varied.items() if origin.drawn}
+    point = _points(experiment, len(numbers) + 1)[index]
+    values: dict[str, float | str] = {}
+    for share, (key, origin) in zip(point, numbers.items(), strict=False):
         low, high = origin.low or 0.0, origin.high or 0.0
         wide = low > 0 and high / low >= 10
         value = float(low * (high / low) ** share) if wide else float(low + (high - low) * share)
@@ -114,14 +118,17 @@ def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float], d
             value = round(value)
         values[key] = value = float(f"{value:.6g}") if isinstance(value, float) else value
         _set(composed, key, value)
+    for share, (key, origin) in zip(_points(f"words of {experiment}", len(words))[index], words.items(), strict=False):
+        values[key] = origin.words[int(share * len(origin.words))]
+        _set(composed, key, values[key])
     values["seed"] = int(point[-1] * (1 << 16))
     return values, {**resolved_block(composed, experiment), "cases": experiment_cases(composed, experiment)}
 
 
-def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any] | None = None) -> dict[str, Any]:
+def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]) -> dict[str, Any]:
     """One sample: what was drawn and, of every case that a claim is about, the key of its simulation and its metrics.
 
-    known: cases of the same sample that were run before; those whose simulation is the same are taken over.
+    known: cases that were run before, by the key of their simulation; they are taken over.
     """
     values, block = draw(chapter, experiment, index)
     seed = int(values["seed"])
@@ -129,9 +136,9 @@ def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]
     definition, cases = loaded.experiment(experiment), {}
     for case in _cases_of(loaded.claims_of(experiment), block["cases"]):
         config = {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case}
-        content, earlier = content_of(definition, config), (known or {}).get(case)
-        if earlier and earlier["content"] == content:
-            cases[case] = earlier
+        content = content_of(definition, config)
+        if content in known:
+            cases[case] = known[content]
             continue
         start = time.perf_counter()
         try:
@@ -144,14 +151,66 @@ def evaluate(chapter: str, experiment: str, index: int, known: Mapping[str, Any]
 
 def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any]) -> bool:
     """Whether a stored sample has every case that the claims are about, under its present simulation."""
-    values, block = draw(chapter, experiment, entry["index"])
+    contents = _contents(chapter, experiment, entry["index"])
+    return all(entry["cases"].get(case, {}).get("content") == content for case, content in contents.items())
+
+
+def _contents(chapter: str, experiment: str, index: int) -> dict[str, str]:
+    """The key of the present simulation of every case that a claim is about, in one sample."""
+    values, block = draw(chapter, experiment, index)
     loaded, seed = chapters.load(chapter), int(values["seed"])
     definition = loaded.experiment(experiment)
-    return all(
-        entry["cases"].get(case, {}).get("content")
-        == content_of(definition, {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case})
+    return {
+        case: content_of(definition, {**block["cases"][case], "perturbation": 0.0, "seed": seed, "case": case})
         for case in _cases_of(loaded.claims_of(experiment), block["cases"])
-    )
+    }
+
+
+def confirm(chapter: str, experiment: str, results: Path, update: bool = False) -> tuple[int, list[str]]:
+    """Carry samples over a change of code: returns how many cases of samples were carried, and the cases that differ.
+
+    The first and the last sample made by other code, of the same draw, run again. A case whose metrics are in both what
+    they were, within the tolerances of the baseline, is the same simulation: its other samples count as such. The
+    samples are those that are shipped where ``update`` renews them, else those among the results.
+    """
+    path = _lines(summary_file(experiment, results, update))
+    entries = {entry["index"]: entry for entry in (_read(path) if update else _all(experiment, results))}
+    old = [
+        entry
+        for entry in entries.values()
+        if not _is_present(chapter, experiment, entry)
+        and entry["values"] == draw(chapter, experiment, entry["index"])[0]
+    ]
+    again = {entry["index"]: evaluate(chapter, experiment, entry["index"], {}) for entry in old[:1] + old[-1:]}
+    known = baselines.stored(chapter)[experiment].metrics
+    ran = {case for sample in again.values() for case in sample["cases"]}
+    same = {
+        case
+        for case in ran
+        if all(
+            _is_same(f"{experiment}.{case}", entries[index]["cases"].get(case, {}), sample["cases"][case], known)
+            for index, sample in again.items()
+        )
+    }
+    carried = 0
+    for entry in old:
+        for case, content in _contents(chapter, experiment, entry["index"]).items():
+            if case in same and case in entry["cases"] and entry["cases"][case]["content"] != content:
+                entry["cases"][case]["content"] = content
+                carried += 1
+    if carried:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with locked(_folder(results)):
+            _write_lines(path, [entries[index] for index in sorted(entries)])
+    return carried, sorted(ran - same)
+
+
+def _is_same(name: str, old: Mapping[str, Any], new: Mapping[str, Any], known: Mapping[str, Mapping[str, Any]]) -> bool:
+    """Whether a case of a sample gave the same numbers twice; both may have failed."""
+    was, now = ({f"{name}.{key}": value for key, value in row.get("metrics", {}).items()} for row in (old, new))
+    exact = {"rtol": 2e-6, "atol": 0.0}  # samples keep six digits
+    entries = {key: {**known.get(key, exact), "value": value} for key, value in was.items()}
+    return was.keys() == now.keys() and all(baselines.agrees(now[key], entry) for key, entry in entries.items())
 
 
 def metrics_of(chapter: str, experiment: str, entry: Mapping[str, Any]) -> Metrics:
@@ -237,10 +296,13 @@ def contribute(chapter: str, experiment: str, index: int, results: Path, deadlin
     with claimed(_folder(results), f"{experiment}.{index}", wait=False) as mine:
         if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index):
             return
-        known = [entry for entry in _all(experiment, results) if entry["index"] == index]
-        line = _line(
-            evaluate(chapter, experiment, index, {"cases": {k: v for e in known for k, v in e["cases"].items()}})
-        )
+        known = {
+            row["content"]: row
+            for entry in _all(experiment, results)
+            if entry["index"] == index
+            for row in entry["cases"].values()
+        }
+        line = _line(evaluate(chapter, experiment, index, known))
         with locked(_folder(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
             file.seek(max(file.tell() - 1, 0))
             cut_short = file.read(1) not in (b"", b"\n")
@@ -252,7 +314,7 @@ def _kept(chapter: str, experiment: str, results: Path, only: int | None = None)
     found = {}
     for entry in _all(experiment, results):
         if only in (None, entry["index"]) and _is_present(chapter, experiment, entry):
-            found[entry["index"]] = entry
+            found[entry["index"]] = {**entry, "values": draw(chapter, experiment, entry["index"])[0]}
     return dict(sorted(found.items()))
 
 
@@ -302,7 +364,8 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
     Only samples count whose cases all ran; "undefined" says in how many a metric was undefined, where the claim fails.
     """
     claims: dict[str, Any] = {}
-    sampled = [(metrics_of(chapter, experiment, entry), entry["values"]) for entry in entries]
+    origins = parameters(chapter, experiment)
+    sampled = [(metrics_of(chapter, experiment, entry), _numeric(entry["values"], origins)) for entry in entries]
     for claim in chapters.load(chapter).claims_of(experiment):
         pairs = [
             (evaluation, values)
@@ -327,10 +390,15 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
             "boundary": _boundary(parameter, pairs),
         }  # fmt: skip
     failed = sum(any("error" in row for row in entry["cases"].values()) for entry in entries)
-    varied = {key: [o.low, o.high] for key, o in parameters(chapter, experiment).items()}
+    varied = {key: list(o.words) if o.drawn else [o.low, o.high] for key, o in origins.items()}
     seconds = sum(row.get("seconds", 0.0) for entry in entries for row in entry["cases"].values())
     return {"chapter": chapter, "experiment": experiment, "samples": len(entries), "failed": failed,
             "seconds": round(seconds, 1), "varied": varied, "claims": claims}  # fmt: skip
+
+
+def _numeric(values: Mapping[str, float | str], origins: Mapping[str, Provenance]) -> dict[str, float]:
+    """The values drawn, with the place of a word among its words."""
+    return {k: origins[k].words.index(v) if isinstance(v, str) else v for k, v in values.items()}
 
 
 def _boundary(parameter: str | None, pairs: Sequence[tuple[Any, Mapping[str, float]]]) -> list[list[float]] | None:

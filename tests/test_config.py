@@ -21,6 +21,8 @@ def test_the_provenance_grammar() -> None:
     assert parse_provenance("m | chosen: fits | 0.5..6e-1") == Provenance("m", "chosen", "fits", 0.5, 0.6)
     assert parse_provenance("- | derived: a/b | -1..+2").low == -1
     assert parse_provenance("khat_o(0) [N/m] | printed 2.4") == Provenance("N/m", "printed", "2.4", symbol="khat_o(0)")
+    assert parse_provenance("- | chosen: open | one of a, b").words == ("a", "b")
+    assert parse_provenance("- | chosen: open | drawn from a, b").drawn
     assert parse_provenance("- | printed Table 6.1 [16]").symbol is None
     assert parse_provenance("just a remark") is None
     assert parse_provenance("m | guessed") is None

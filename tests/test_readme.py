@@ -188,7 +188,9 @@ def test_every_study_counts(shell: Shell, tmp_path: Path, command: str) -> None:
     done = shell(few)
     assert done.returncode == 0, done.stderr
     assert "C7.01: holds in" in done.stdout
-    assert json.loads(next(tmp_path.glob("results/studies/*.json")).read_text())["samples"] >= 2  # those shipped count too
+    assert (
+        json.loads(next(tmp_path.glob("results/studies/*.json")).read_text())["samples"] >= 2
+    )  # those shipped count too
 
 
 def test_the_script_for_slurm_runs_a_sweep_like_that_of_the_readme() -> None:

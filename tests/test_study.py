@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import gzip
 import os
 import shutil
@@ -9,6 +10,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -54,7 +56,7 @@ def test_a_case_that_fails_leaves_the_claims_of_the_others(folder: Path, monkeyp
     values, block = study.draw("90", "decay", 0)
     block["cases"]["gain2"]["fail"] = True
     monkeypatch.setattr(study, "draw", lambda *_: (values, block))
-    sample = study.evaluate("90", "decay", 0)
+    sample = study.evaluate("90", "decay", 0, {})
     assert sample["cases"]["gain2"]["error"] == "ValueError: told to fail"
     found = study.summary("90", "decay", [sample])
     assert found["failed"] == 1
@@ -74,6 +76,22 @@ def test_points_cover_the_ranges_evenly_and_lists_are_drawn_element_by_element(
     assert set(study.parameters("90", "decay")) == {"decay.start", "decay.gains.0", "decay.gains.1"}
     values, block = study.draw("90", "decay", 5)
     assert block["gains"] == [values["decay.gains.0"], values["decay.gains.1"]]
+    study.parameters.cache_clear()
+
+
+def test_words_are_drawn_evenly_and_leave_the_numbers_alone(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    start = study.parameters("90", "decay")["decay.start"]
+    before = [study.draw("90", "decay", index)[0] for index in range(16)]
+    words = study.Provenance("-", "chosen", "either", words=("exact", "euler"), drawn=True)
+    composed = study.compose_chapter("90")
+    composed["decay"]["integrator"] = "exact"
+    monkeypatch.setattr(study, "compose_chapter", lambda chapter: copy.deepcopy(composed))
+    monkeypatch.setattr(study, "provenance", lambda chapter: {"decay.start": start, "decay.integrator": words})
+    study.parameters.cache_clear()
+    drawn = [study.draw("90", "decay", index) for index in range(16)]
+    assert [block["integrator"] for _, block in drawn] == [values["decay.integrator"] for values, _ in drawn]
+    assert sorted(values.pop("decay.integrator") for values, _ in drawn) == ["euler"] * 8 + ["exact"] * 8
+    assert [values for values, _ in drawn] == before
     study.parameters.cache_clear()
 
 
@@ -169,6 +187,40 @@ def test_shipped_samples_count_and_those_of_another_configuration_do_not(
     monkeypatch.setattr(study, "parameters", lambda *_: narrower)
     assert read_json(study.run("90", "decay", 2, Path("other")))["samples"] == 2
     assert evaluated[2:] == [0, 1]
+
+
+def test_only_the_cases_that_changed_run_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    study.run("90", "decay", 2, RESULTS, workers=1)
+    keys = study.content_of
+    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
+    monkeypatch.setattr(study, "content_of", lambda who, values: keys(who, values) + "new" * (values["case"] == "fast"))
+    ran: list[str] = []
+    run_case = study.run_case
+    monkeypatch.setattr(
+        study, "run_case", lambda who, values, seed: ran.append(values.case) or run_case(who, values, seed)
+    )
+    assert read_json(study.run("90", "decay", 2, RESULTS))["samples"] == 2
+    assert ran == ["fast", "fast"]
+
+
+def test_samples_are_carried_over_a_change_of_code_that_changes_no_number(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = study.run("90", "decay", 4, RESULTS, workers=1)
+    keys, run_case = study.content_of, study.run_case
+    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
+    monkeypatch.setattr(study, "content_of", lambda who, values: keys(who, values) + "of other code")
+
+    def other(who: Any, values: Any, seed: int) -> Any:
+        recording, metrics, *rest = run_case(who, values, seed)
+        return recording, {**metrics, "final": metrics["final"] * (1.01 if values.case == "fast" else 1)}, *rest
+
+    monkeypatch.setattr(study, "run_case", other)
+    assert study.confirm("90", "decay", RESULTS) == (3 * 4, ["fast"])
+    monkeypatch.setattr(study, "run_case", run_case)
+    assert study.confirm("90", "decay", RESULTS) == (4, [])
+    monkeypatch.setattr(study, "run_case", lambda *_: pytest.fail("it was simulated again"))
+    assert read_json(study.run("90", "decay", 4, RESULTS)) == read_json(path)
 
 
 def test_a_study_never_becomes_smaller(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

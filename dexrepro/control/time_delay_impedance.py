@@ -103,15 +103,15 @@ class TimeDelayImpedance:
         self.velocity_filter, self.torque_limit, self.integral_rate = velocity_filter, torque_limit, integral_rate
         self._previous: tuple[Array, Array, Array, Array] | None = None
         self._integral: Array | float = 0.0
-        self.error = np.zeros(0)
+        self.error = self.gain = np.zeros(0)
 
     def reset(self, measured: Measured[Array]) -> None:
         """Forget the torque of the last period and the integral."""
         self._previous, self._integral = None, 0.0
 
     def diagnostics(self) -> Mapping[str, Array]:
-        """r (n,) [rad/s] of the last call."""
-        return {"filtered_error": self.error}
+        """r (n,) [rad/s] and K_imp (n,) [N m s/rad] of the last call."""
+        return {"filtered_error": self.error, "impedance": self.gain}
 
     def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
         """Torque (n,) [N m]."""
@@ -123,7 +123,8 @@ class TimeDelayImpedance:
         bias = self.model.bias(position, velocity)
         target = dq_d + self.error_slope * e
         torque = mass @ (ddq_d + self.error_slope * de) + coriolis(self.model, position, velocity, target) + gravity
-        restoring = self._impedance_sign * self.impedance(self.stiffness(time), r) * r
+        self.gain = self.impedance(self.stiffness(time), r)
+        restoring = self._impedance_sign * self.gain * r
         torque += restoring + self._integral
         if self._previous and self.estimation:
             delayed, old_velocity, old_mass, old_bias = self._previous
@@ -154,20 +155,21 @@ class GravityImpedance:
     ) -> None:
         self.model, self.error_slope, self.impedance = model, error_slope, impedance
         self.stiffness, self.torque_limit = stiffness, torque_limit
-        self.error = np.zeros(0)
+        self.error = self.gain = np.zeros(0)
 
     def reset(self, measured: Measured[Array]) -> None:
         """Nothing is remembered but the last error."""
 
     def diagnostics(self) -> Mapping[str, Array]:
-        """r (n,) [rad/s] of the last call."""
-        return {"filtered_error": self.error}
+        """r (n,) [rad/s] and K_imp (n,) [N m s/rad] of the last call."""
+        return {"filtered_error": self.error, "impedance": self.gain}
 
     def __call__(self, measured: Measured[Array], desired: Motion[Array]) -> Command:
         """Torque (n,) [N m]."""
         q = measured.position
         self.error = r = desired.velocity - measured.velocity + self.error_slope * (desired.position - q)
-        torque = self.model.gravity(q) + self.impedance(self.stiffness(measured.time), r) * r
+        self.gain = self.impedance(self.stiffness(measured.time), r)
+        torque = self.model.gravity(q) + self.gain * r
         return Command(np.clip(torque, -self.torque_limit, self.torque_limit))
 
 

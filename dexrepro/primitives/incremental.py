@@ -177,10 +177,21 @@ def original(primitive: DMP) -> DMP:
 
 
 def interpolate(first: DMP, second: DMP, share: float) -> DMP:
-    """Mix two styles on shared features: weights share theta_1 + (1 - share) theta_2; Eq. (5.30)."""
+    """Mix two styles on shared features: weights share theta_1 + (1 - share) theta_2; Eq. (5.30).
+
+    Start, goal and initial velocity, of which (5.30) says nothing, are mixed alike. Where the amplitude is the same for
+    both, the path is then the pointwise mixture of the two.
+    """
     if first.features is not second.features:
         raise ValueError("only skills on shared features can be mixed by their weights")
-    return replace(first, weights=share * first.weights + (1 - share) * second.weights)
+
+    return replace(
+        first,
+        weights=share * first.weights + (1 - share) * second.weights,
+        start=share * first.start + (1 - share) * second.start,
+        goal=share * first.goal + (1 - share) * second.goal,
+        velocity=share * first.velocity + (1 - share) * second.velocity,
+    )
 
 
 def _change_target(primitive: DMP, demonstration: Demonstration, rest: float) -> tuple[Array, Array]:

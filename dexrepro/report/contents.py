@@ -13,7 +13,7 @@ from typing import Any
 from PIL import Image
 
 from dexrepro import chapters
-from dexrepro.claims import Claim, Erratum
+from dexrepro.claims import Claim, Erratum, filled
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.experiment import Experiment
 from dexrepro.plan import lacking, outdated, plan_chapter
@@ -154,12 +154,14 @@ class Contents:
         text = " ".join([entry["statement"], entry["note"], entry["where"], *(item.equation for item in touching)])
         names = [name.split(".") for name in entry["values"]]
         shown = {**entry, "study": row, "robustness": verdicts.robustness(row), "chapter": self.number}
+        beside = filled(claim.beside, self.metrics) if claim else ""
         return {
             **shown,
             "strength": verdicts.strength(shown),
             "severe": verdicts.is_severe(shown),
             "noticed": verdicts.noticed(shown),
             "often": verdicts.often(shown),
+            "beside": "" if "?" in beside else beside,  # its numbers are not there
             "where": re.sub(r"^(?=\d)", "Sect. ", entry["where"]),
             "errata": touching,
             "equations": equations.numbers(text),

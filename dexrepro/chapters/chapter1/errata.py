@@ -76,7 +76,12 @@ ERRATA = (
         "themselves, and with both compared controllers, for the opposite definitions.",
         "e_f = f_d - f_z and e_z = z_r - z_A, all laws as printed.",
         f"{TRACKING}.law.printed=true",
-        (f"{TRACKING}.c1_printed.rmse", f"{TRACKING}.c1_proposed.rmse", "hold_and_move.t1_printed.rmse"),
+        (
+            f"{TRACKING}.c1_printed.rmse",
+            f"{TRACKING}.c1_proposed.rmse",
+            "hold_and_move.t1_printed.rmse",
+            "sensitivity.tracking.best_printed_c1",
+        ),
     ),
     Erratum(
         "E1.11",

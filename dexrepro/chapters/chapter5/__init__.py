@@ -11,6 +11,7 @@ TITLE = "Incremental movement primitives and adaptive neural control"
 ORDER = (
     "incremental_update",
     "letter_accuracy",
+    "real_handwriting",
     "style_transformation",
     "bounded_tracking",
     "knowledge_reuse",

@@ -151,9 +151,10 @@ ERRATA = (
         switch="bounded_tracking.law.printed=[network]",
         evidence=tuple(
             f"{TRACKING}.{c}.{m}"
-            for c in ("letter_w", "printed_sign", "sign_only", "printed_no_robust")
+            for c in ("letter_w", "printed_sign", "sign_only", "printed", "printed_no_robust")
             for m in ("bound_use", "outside")
-        ),
+        )
+        + ("obstacle_tracking.printed.bound_use", "knowledge_reuse.printed_sign.w.early"),
     ),
     Erratum(
         "E5.18",

@@ -134,7 +134,8 @@ def photographs(
 
 
 def run(config: Config, reference: Reference, world: World, **options: Any) -> Recording:
-    """Follow a reference; channels ``planned`` (tip, m), ``reference`` (angles), ``filtered_error`` r if reported.
+    """Follow a reference; channels ``planned`` (tip, m), ``reference`` (angles) and, if the law reports them,
+    ``filtered_error`` r and ``impedance`` K_imp.
 
     The run ends with a status when a joint turns faster than 200 rad/s.
     """
@@ -149,7 +150,7 @@ def run(config: Config, reference: Reference, world: World, **options: Any) -> R
     probes = {
         "reference": lambda: reference(world.time).position,
         "planned": lambda: reference.tip[reference.index(world.time)],
-    } | contract.channels(law, "filtered_error")
+    } | contract.channels(law, "filtered_error", "impedance")
     recording = world.run(
         (len(reference) - 1) * reference.dt,
         {"arm": JointDrive(law, reference)},

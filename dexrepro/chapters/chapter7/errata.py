@@ -60,7 +60,7 @@ ERRATA = (
         "The factor g - x0 of each coordinate vanishes where start and goal agree (heights, stiffness) and turns no "
         "path: the known limitation of this form of the primitive.",
         "Carry the forcing over by a matrix in the frame of the path.",
-        switch=f"{FUZZY}.task.scaling=printed_per_axis",
+        switch=f"{FUZZY}.task.printed=[scaling]",
         evidence=(f"{FUZZY}.main.clearance_three", f"{FUZZY}.printed_per_axis.clearance_three"),
     ),
     Erratum(
@@ -88,7 +88,7 @@ ERRATA = (
     Erratum(
         "E7.16", "(7.33), (7.36)", "slip",
         "T X' = V' has a dot too many, by print or by text extraction; literally the movement ends 6 cm short.",
-        "T X' = V, as in (7.3) and (7.12).", switch=f"{FUZZY}.task.kinematics=printed",
+        "T X' = V, as in (7.3) and (7.12).", switch=f"{FUZZY}.task.printed=[kinematics]",
         evidence=(f"{FUZZY}.main.end_error", f"{FUZZY}.printed_kinematics.end_error"),
     ),
     Erratum(
@@ -104,7 +104,7 @@ ERRATA = (
         "tau = ... + tau_hat with tau_hat = (tau - M q'' - C q' - G)(t - L) + K_imp r.",
         switch=f"{TRACKING}.law.printed=[second_line]",
         evidence=(f"{TRACKING}.muscle.rms_error", f"{TRACKING}.printed.diverged_at",
-                  f"{TRACKING}.printed_unlimited.diverged_at"),
+                  f"{TRACKING}.printed_unlimited.diverged_at", f"{STABILITY}.displaced_printed.lyapunov_rise"),
     ),
     Erratum(
         "E7.19", "(7.39)", "error",
@@ -121,7 +121,7 @@ ERRATA = (
         switch=f"+{TRACKING}.cases.as_printed={{law:{{impedance:{{_target_:dexrepro.control.time_delay_impedance"
         ".RobustImpedance,stiffness_gain:10.0,switching_gain:100.0,force_bound:1.0,boundary_layer:1e-9}}}",
         evidence=(f"{TRACKING}.robust_printed.rms_error", f"{TRACKING}.robust_printed.torque_travel",
-                  f"{TRACKING}.robust_small.rms_error"),
+                  f"{TRACKING}.robust_small.rms_error", f"{TRACKING}.jumps_robust_printed.rms_error"),
     ),
     Erratum(
         "E7.21", "(7.42)", "slip", "M r lacks a dot, as (7.43) shows; it follows from (7.39), not from Step 6.3.",

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from dexrepro.arrays import Array
 from dexrepro.chapters.demonstrations import recorded
 from dexrepro.config import compose_chapter
+from dexrepro.control.contract import printed_forms
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config
 from dexrepro.humans.muscle import Muscle, low_pass
@@ -254,6 +255,7 @@ class NewTask:
 
     def __init__(self, config: Config, skills: Skills) -> None:
         self.config, self.skills, task = config, skills, config.task
+        self.printed = printed_forms(task.printed, ("scaling", "kinematics"))
         self.reach = Reach(task.start, task.goal)
         self.obstacle = Obstacle(task.obstacle, task.height, config.scene.cube)
         self.distance = float(np.hypot(*np.subtract(task.obstacle, task.start)))
@@ -267,7 +269,7 @@ class NewTask:
     @cached_property
     def forcing(self) -> Array:
         """The ordinary forcing term carried over: plane lengths scale with the task, heights do not."""
-        if self.config.task.scaling == "printed_per_axis":
+        if "scaling" in self.printed:
             return self.skills.forcing * self._axis_ratios()
         return self.skills.forcing @ self.scaling(1.0, self.ratio).T
 
@@ -287,7 +289,7 @@ class NewTask:
             direction=direction,
         )
         task = self.config.task
-        if task.scaling == "printed_per_axis":
+        if "scaling" in self.printed:
             return blend @ self.skills.reach.axes * self._axis_ratios()
         lateral, vertical = {"absolute": (1.0, 1.0), "all_axes": (self.ratio, self.ratio)}[task.reaction_scaling]
         # blend is in the frame of the path; S carries it there from the board's, so the old axes are the identity.
@@ -295,10 +297,8 @@ class NewTask:
 
     def perform(self, reaction: ArrayLike = 0.0) -> Array:
         """Generalised movements (..., N, 3) [cm], Eq. (7.36)."""
-        printed = self.config.task.kinematics == "printed"
-        return self.skills.primitive.rollout(
-            self.forcing + np.asarray(reaction, float), *self.reach.ends, printed=printed
-        )
+        forcing = self.forcing + np.asarray(reaction, float)
+        return self.skills.primitive.rollout(forcing, *self.reach.ends, printed="kinematics" in self.printed)
 
     def clearance(self, paths: Array) -> Array:
         return self.obstacle.clearance(paths, self.config.scene.tool_radius)

@@ -34,7 +34,12 @@ ERRATA = (
         "damping of 0.5 to 5 % of Kp. (8.36) is consistent with rate 1; rates may be unprinted.",
         "Rates Gamma, given beside the printed 1.",
         "'circle_tracking.networks.rates=[1,1,1]'",
-        (f"{CIRCLE}.broad_unit.network_force", f"{CIRCLE}.broad.network_force"),
+        (
+            f"{CIRCLE}.broad_unit.network_force",
+            f"{CIRCLE}.broad.network_force",
+            f"{CIRCLE}.friction_broad_unit.early_y",
+            f"{CIRCLE}.orbit_left_unit.bound_used",
+        ),
     ),
     Erratum(
         "E8.04",

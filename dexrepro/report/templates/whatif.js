@@ -43,9 +43,11 @@ function whatIf(place, study) {
 
   function draw() {
     const key = parameter.value;
+    const words = typeof study.varied[key][0] === "string" ? study.varied[key] : null;
+    const number = (sample) => words ? words.indexOf(sample.values[key]) : sample.values[key];
     const draws = study.draws.filter((d) => d.margins[claim.value] != null && key in d.values)
-      .sort((a, b) => a.values[key] - b.values[key]);
-    const [low, high] = study.varied[key];
+      .sort((a, b) => number(a) - number(b));
+    const [low, high] = words ? [0, words.length - 1] : study.varied[key];
     const wide = low > 0 && high / low >= 10 && draws.every((d) => d.values[key] > 0);
     const scale = wide ? Math.log : (x) => x;
     const right = FRAME.width - FRAME.right;
@@ -57,11 +59,14 @@ function whatIf(place, study) {
       node("line", { class: "rule", x1: FRAME.left, x2: right, y1: y(margin), y2: y(margin), ...(margin ? { "stroke-dasharray": "2 4" } : {}) });
       node("text", { x: FRAME.left - 8, y: y(margin) + 4, "text-anchor": "end" }, short(margin));
     }
-    for (const [value, anchor] of [[low, "start"], [high, "end"]]) node("text", { x: x(value), y: bottom + 18, "text-anchor": anchor }, short(value));
+    for (const value of words ? words.keys() : [low, high]) {
+      const anchor = value === low ? "start" : value === high ? "end" : "middle";
+      node("text", { x: x(value), y: bottom + 18, "text-anchor": anchor }, words ? words[value] : short(value));
+    }
     node("text", { x: (FRAME.left + right) / 2, y: bottom + 34, "text-anchor": "middle" }, scale === Math.log ? `${key} (logarithmic)` : key);
     node("text", { x: 14, y: (FRAME.top + bottom) / 2, transform: `rotate(-90 14 ${(FRAME.top + bottom) / 2})`, "text-anchor": "middle" }, "margin");
     marks = draws.map((sample, i) => {
-      const [cx, cy, holds] = [x(sample.values[key]), y(sample.margins[claim.value]), sample.margins[claim.value] > 0];
+      const [cx, cy, holds] = [x(number(sample)), y(sample.margins[claim.value]), sample.margins[claim.value] > 0];
       const mark = holds ? node("circle", { class: "holds", cx, cy, r: 4.5 })
         : node("path", { class: "fails", d: `M${cx - 4} ${cy - 4}l8 8m0 -8l-8 8` });
       mark.addEventListener("mouseenter", () => choose(i));
@@ -80,9 +85,10 @@ function whatIf(place, study) {
     const { mark, sample } = marks[chosen];
     mark.classList.add("chosen");
     const margin = sample.margins[claim.value];
+    const value = sample.values[parameter.value];
     const values = Object.entries(sample.values).map(([key, value]) => `${key}=${value}`);
     told.replaceChildren(
-      make("p", { className: "note", textContent: `Draw ${sample.index}: margin ${short(margin)}, ${claim.value} ${margin > 0 ? "holds" : "fails"}; ${parameter.value} = ${short(sample.values[parameter.value])}.` }),
+      make("p", { className: "note", textContent: `Draw ${sample.index}: margin ${short(margin)}, ${claim.value} ${margin > 0 ? "holds" : "fails"}; ${parameter.value} = ${typeof value === "string" ? value : short(value)}.` }),
       make("pre", { className: "command", textContent: `dexrepro run chapter=${study.chapter} only=${study.experiment} ${values.join(" ")}` }));
   }
 

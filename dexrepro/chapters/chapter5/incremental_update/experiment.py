@@ -227,12 +227,11 @@ def _measure_maps(frame: pd.DataFrame) -> Metrics:
 
 
 def _measure_drift(frame: pd.DataFrame) -> Metrics:
-    """Number of features up to which update and solution anew agree to a millionth of the target."""
-    result: Metrics = {}
-    for count, part in frame.groupby("kernels"):
-        wrong = part.m[part.gap > 1e-6]
-        result[f"n{count}.reliable"] = int(wrong.min() - part.m.iloc[0]) if len(wrong) else int(part.m.max())
-    return result
+    """Whether update and solution anew end further apart than a hundredth of the target.
+
+    The gap itself is amplified rounding: from one feature to the next it grows tenfold, on each machine another way.
+    """
+    return {f"n{count}.lost": int(part.gap.iloc[-1] > 1e-2) for count, part in frame.groupby("kernels")}
 
 
 def _measure_cost(frame: pd.DataFrame) -> Metrics:

@@ -8,7 +8,6 @@ import numpy as np
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter7 import desk
-from dexrepro.control.contract import build
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.reaching import Obstacle
 from dexrepro.measures import rms
@@ -43,16 +42,14 @@ def pushed(config: Config, time: float) -> bool:
 def predicted_deviation(recording: Recording, config: Config) -> float:
     """Deviation [mm] J (K k)^-1 J^T F of the last posture under the push without estimation, friction left out.
 
-    nan for a law without an impedance.
+    nan for a law that reports no impedance.
     """
     angles, nudge = recording["reference"][-1], 1e-6
     steps = nudge * np.eye(3)
     jacobian = (pen_arm_tip(angles + steps) - pen_arm_tip(angles - steps)).T / (2 * nudge)
-    law = build(config.law, model=None, stiffness=None)
-    if not hasattr(law, "impedance"):
+    if "impedance" not in recording:
         return math.nan
-    impedance = law.impedance(recording["stiffness"][-1], np.zeros(3))
-    compliance = jacobian @ np.diag(1 / (impedance * config.error_slope)) @ jacobian.T
+    compliance = jacobian @ np.diag(1 / (recording["impedance"][-1] * config.error_slope)) @ jacobian.T
     return float(1e3 * np.linalg.norm(compliance @ (0.0, config.push_force, 0.0)))
 
 
