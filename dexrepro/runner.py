@@ -419,8 +419,8 @@ def _why_again(plan: Plan) -> str:
     """Why a result is not taken as it is."""
     try:
         return outdated(plan, read_json(plan.folder / "run.json")) or "its result is not whole or of other packages"
-    except (OSError, ValueError):
-        return f"there is no result in {plan.folder}"
+    except (OSError, ValueError, AttributeError):
+        return f"there is no whole result in {plan.folder}"
 
 
 def _why_run(job: Job) -> str:
@@ -430,7 +430,7 @@ def _why_run(job: Job) -> str:
         return f"runs, it is not in {Path(job.folder).parent}"
     try:
         changed = differences(job.config, read_json(earlier[-1])["config"])
-    except (OSError, ValueError, KeyError):
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
         changed = []
     named = ", ".join(changed[:SHOWN]).replace("(book: ", "(was: ")
     return f"runs again: {named or 'code or a file that it uses, or the version of a package changed'}"

@@ -132,7 +132,7 @@ def test_a_result_that_cannot_be_drawn_is_named_and_stays(
         ("study samples=-3", "samples = -3 is not allowed"),
         ("study hours=nan", "hours = nan is not allowed: it must be a number greater than 0"),
         ("study hours=-1", "hours = -1 is not allowed"),
-        ("study smaples=3", "there are: chapter=N, only=EXPERIMENT, figure=ID, results=DIR, claim=ID, samples="),
+        ("study smaples=3", "there are: chapter=N, only=EXPERIMENT, figure=ID, results=DIR, case=NAME, claim=ID, "),
         ("new controller Random", "random.py would hide the module 'random'"),
         ("new controller None", "it must be a class name such as MyLaw"),
     ],

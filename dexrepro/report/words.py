@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pandas as pd
 from markupsafe import Markup
 
 from dexrepro.report import symbols
+
+if TYPE_CHECKING:  # its import takes longer than a run that has nothing to do
+    import pandas as pd
 
 
 def breakable(name: str) -> Markup:
@@ -26,7 +28,7 @@ def column_kind(column: pd.Series[Any]) -> str:
 
 def cell(value: Any) -> str:
     """A table's entry: a minus sign at which no line is broken, words in place of ``True`` and of a key."""
-    if pd.isna(value):
+    if value is None or value != value:
         return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
