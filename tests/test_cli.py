@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -162,7 +163,10 @@ def test_ctrl_c_leaves_no_half_result_and_the_next_run_completes_it(tmp_path: Pa
         sys.executable, "-m", "dexrepro", "run", "figure=2.7", "movement_estimation.duration=3.0", "workers=1", *ONLY_K,
     ]  # fmt: skip
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
-    process = subprocess.Popen(command, cwd=tmp_path, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    heeding = partial(signal.signal, signal.SIGINT, signal.default_int_handler)  # ignored where tests run in background
+    process = subprocess.Popen(
+        command, cwd=tmp_path, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=heeding
+    )
     cache = tmp_path / "results/.cache/movement_estimation"
     deadline = time.monotonic() + 60
     while not (finished := list(cache.glob("*/case.json"))) and time.monotonic() < deadline:

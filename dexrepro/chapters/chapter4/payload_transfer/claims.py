@@ -115,6 +115,7 @@ CLAIMS = (
         "What was trained in phases I and II transfers to new trajectories.",
         _transfers("reuse", "frozen", "zero", "nodes"),
         control=_transfers("constant", "constant_frozen", "constant_zero"),
+        credits="the knowledge in the broad network",
         where="4.6",
         note="The control is an integrator: what transfers is mainly the payload's weight. One constant node leaves "
         "{payload_transfer.constant.rmse_mm:.1f} mm trained, {payload_transfer.constant_zero.rmse_mm:.1f} mm untrained "
