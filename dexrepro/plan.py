@@ -348,7 +348,8 @@ def import_anew(values: Mapping[str, Any]) -> None:
         place = getattr(module, "__file__", None)
         if name != "__main__" and place and Path(place) in paths:
             del sys.modules[name]
-            with contextlib.suppress(OSError, NotImplementedError):  # of the same second and size, it passes for new
+            # Kept bytecode of the same second and size would pass for new; an interpreter may keep none.
+            with contextlib.suppress(OSError, NotImplementedError):
                 Path(importlib.util.cache_from_source(place)).unlink()
     importlib.invalidate_caches()
 
