@@ -262,6 +262,15 @@ class Claim:
         return AFTER_CORRECTION if printed is not None and not printed > 0 else REPRODUCED
 
 
+def about(figure: str, where: str = "", source: str = "book") -> Callable[..., Claim]:
+    """``Claim`` for one figure and place in the book: called without them, it takes what else a claim takes."""
+
+    def claim(id: str, statement: str, predicate: Predicate | None, **more: Any) -> Claim:
+        return Claim(id, figure, statement, predicate, **{"where": where, "source": source, **more})
+
+    return claim
+
+
 def filled(text: str, values: Mapping[str, Any]) -> str:
     """A text whose ``{experiment.case.metric:format}`` are replaced by the run's numbers ("?" where absent)."""
 
