@@ -320,10 +320,11 @@ def test_a_study_in_a_checkout_changes_no_tracked_file(tmp_path: Path) -> None:
     assert subprocess.run([*git, "status", "--porcelain"], capture_output=True, text=True, check=True).stdout == ""
 
 
-@pytest.mark.parametrize(("share", "wrong"), [(0.8499, "robust"), (0.85, "fragile"), (0.80, "robust"), (0.90, "fragile")])
+@pytest.mark.parametrize(
+    ("share", "wrong"), [(0.8499, "robust"), (0.85, "fragile"), (0.80, "robust"), (0.90, "fragile")]
+)
 def test_a_word_of_a_study_is_wrong_in_at_most_one_of_twenty(share: float, wrong: str) -> None:
-    """Exact, and wherever a study ends: the chance of every count of draws that held, where a claim holds in ``share``,
-    looked at after every draw."""
+    """Exact: the chance of every count of draws that held, looked at after every draw, a claim holding in ``share``."""
     alive, words = np.ones(1), dict.fromkeys(("robust", "fragile", "open"), 0.0)
     for look in range(1, LOOKS[-1] + 1):
         alive = np.convolve(alive, [1 - share, share])
