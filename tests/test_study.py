@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
-from scipy import stats
 
 from dexrepro import study
 from dexrepro.claims import LOOKS, Claim, less, robustness
