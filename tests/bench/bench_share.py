@@ -18,7 +18,8 @@ from dexrepro.physics.world import World
 
 CASES = (
     "8/circle_tracking.broad", "3/fixed_opening.reach1", "4/skill_reuse.broad20", "4/payload_transfer.reuse",
-    "7/impedance_tracking.muscle", "1/hold_and_move.t1_proposed", "2/movement_estimation.sigma10", "2/balloon_static.off_80",
+    "7/impedance_tracking.muscle", "1/hold_and_move.t1_proposed", "2/movement_estimation.sigma10",
+    "2/balloon_static.off_80",
 )  # fmt: skip
 
 
