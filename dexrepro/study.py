@@ -19,7 +19,7 @@ import re
 import time
 import zlib
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -268,7 +268,7 @@ def _rounded(numbers: Mapping[str, float | None]) -> dict[str, float | None]:
     return {key: value if value is None else float(f"{value:.6g}") for key, value in numbers.items()}
 
 
-def _cases_of(claims: Sequence[Claim], cases: Mapping[str, Any], only: Cases = ()) -> list[str]:
+def _cases_of(claims: Sequence[Claim], cases: Iterable[str], only: Cases = ()) -> list[str]:
     """The cases that the claims are about, all as soon as a claim needs a number over several; of them only some."""
     if only:
         return [case for case in cases if case in only]
@@ -329,7 +329,7 @@ def run(
                 if len(entries) >= _held(target):  # fewer where the hours are over
                     _write_lines(_lines(target), entries)
                     write_json(target, found)
-            undecided = tuple(c for c in claims if found["claims"].get(c.id, {}).get("word") == OPEN)
+            undecided = [c for c in claims if found["claims"].get(c.id, {}).get("word") == OPEN]
             if failed or time.time() > deadline or not undecided:
                 break
     if failed:
