@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -224,7 +225,12 @@ class MujocoScene:
         self.geometries: list[Geometry] = []
         self.drags: dict[int, Array] = {}
         self._pushed, self._touches = False, list[tuple[tuple[Geometry, Geometry], Vector, Array]]()
-        self._gui, self._viewer = gui, cast(Any, None)
+        self._gui, self._viewer, self._shown = gui, cast(Any, None), 0.0
+        if gui:
+            self.spec.add_texture(
+                name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
+                rgb1=(0.9, 0.93, 0.97), rgb2=(0.6, 0.65, 0.7), width=64, height=384,
+            )  # fmt: skip
         self._names = (f"n{k}" for k in itertools.count())
         self._bound = 0
         self.compile()
@@ -264,6 +270,10 @@ class MujocoScene:
             self._show()
 
     def _show(self) -> None:
+        """Show the state, as often as a screen can."""
+        if (now := time.perf_counter()) - self._shown < 1 / 60:
+            return
+        self._shown = now
         if self._viewer is None:
             from mujoco import viewer
 
