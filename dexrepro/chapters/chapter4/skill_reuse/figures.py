@@ -212,11 +212,9 @@ def paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawin
         panel.plot(*recordings["broad20"]["tip"][now].T, color=style.BOOK, linewidth=0.8)
         panel.plot(*ends[k].T, **style.LINES["reference"])
         panel.set_title(f"stroke {ROMAN[k]}: {metrics['broad20'][f'stroke{k + 1}_rmse_mm']:.1f} mm", fontsize=7)
-        panel.set_xlabel("x [m]")
     for panel in axes.flat:
         panel.set(aspect="equal", xlim=(0.63, 1.37), ylim=(-0.3, 0.3))
-    for panel in axes[:, 0]:
-        panel.set_ylabel("y [m]")
+    style.edges(axes, "x [m]", "y [m]")
     _, best = min((number(metrics[case]["steady_rmse_mm"]), METHODS[case][0]) for case in shown)
     text = f"Ellipse after training (error: rms of the last 10 s), strokes below; {best} ends nearest"
     return style.title(figure, text)
