@@ -161,10 +161,10 @@ def twin(axes: Axes, label: str = "", color: str = "black") -> Axes:
     return other
 
 
-def level(axes: Axes, value: float, word: str, va: str = "top", x: float = 0.98, fontsize: float = 8) -> None:
+def level(axes: Axes, value: float, word: str, va: str = "top", x: float = 0.98) -> None:
     """A dashed line at a value, named at the right end."""
     axes.axhline(value, **LINES["reference"])
-    axes.annotate(word, (x, value), xycoords=("axes fraction", "data"), ha="right", va=va, fontsize=fontsize)
+    axes.annotate(word, (x, value), xycoords=("axes fraction", "data"), ha="right", va=va, fontsize=8)
 
 
 def drawn(

@@ -224,9 +224,9 @@ GROUPS = {"thresholds of the broad network": ("broad20", "broad30", "broad50"),
           "broad network and its rivals": ("broad20", "rbf10", "fuzzy", "rbf2")}  # fmt: skip
 
 
-def envelope(time: Array, size: Array, width: float = 0.5) -> Array:
-    """Largest size within half a width [s] before and after each instant."""
-    return maximum_filter1d(size, max(round(width / (time[1] - time[0])), 1))
+def envelope(time: Array, size: Array) -> Array:
+    """Largest size within 0.25 s before and after each instant."""
+    return maximum_filter1d(size, max(round(0.5 / (time[1] - time[0])), 1))
 
 
 def errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
