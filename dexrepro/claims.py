@@ -38,6 +38,11 @@ class Predicate:
         return self.text
 
 
+TIE = 0.01
+"""Two numbers of runs that are said to be in order, and by no factor, tie where they differ by less than this share of
+the larger; a tie does not hold, in a claim, its control, its printed form and its readings alike."""
+
+
 def _relative_gap(smaller: float, larger: float) -> float:
     scale = max(abs(smaller), abs(larger))
     return (larger - smaller) / scale if scale > 0 else 0.0
@@ -52,10 +57,12 @@ def _operand(value: str | float, factor: float) -> str:
 def less(a: str, b: str | float, factor: float = 1.0) -> Predicate:
     """a < factor * b, where b is a metric or a number. Margin (factor b - a) / max(|a|, |factor b|).
 
-    Against a bound of 0 the margin is 1 or -1, whatever a: it then tells the verdict alone.
+    Of two metrics without a factor the margin is ``TIE`` less. Against a bound of 0 it is 1 or -1, whatever a: it then
+    tells the verdict alone.
     """
     if isinstance(b, str):
-        return Predicate(f"{a} < {_operand(b, factor)}", (a, b), lambda v: _relative_gap(v[0], factor * v[1]))
+        tie = TIE if factor == 1 else 0.0
+        return Predicate(f"{a} < {_operand(b, factor)}", (a, b), lambda v: _relative_gap(v[0], factor * v[1]) - tie)
     bound = factor * b
     return Predicate(f"{a} < {bound:g}", (a,), lambda v: _relative_gap(v[0], bound))
 
@@ -63,7 +70,8 @@ def less(a: str, b: str | float, factor: float = 1.0) -> Predicate:
 def greater(a: str, b: str | float, factor: float = 1.0) -> Predicate:
     """a > factor * b, where b is a metric or a number. Margin (a - factor b) / max(|a|, |factor b|); see ``less``."""
     if isinstance(b, str):
-        return Predicate(f"{a} > {_operand(b, factor)}", (a, b), lambda v: _relative_gap(factor * v[1], v[0]))
+        tie = TIE if factor == 1 else 0.0
+        return Predicate(f"{a} > {_operand(b, factor)}", (a, b), lambda v: _relative_gap(factor * v[1], v[0]) - tie)
     bound = factor * b
     return Predicate(f"{a} > {bound:g}", (a,), lambda v: _relative_gap(bound, v[0]))
 
@@ -76,8 +84,9 @@ def within(a: str, low: float, high: float) -> Predicate:
 
 
 def ordered(*names: str) -> Predicate:
-    """The metrics increase in the order given. Margin: the smallest of the neighbours' margins."""
-    return Predicate(" < ".join(names), names, lambda v: min(_relative_gap(a, b) for a, b in itertools.pairwise(v)))
+    """The metrics increase in the order given, without a ``TIE``. Margin: the smallest of the neighbours' margins."""
+    text = " < ".join(names)
+    return Predicate(text, names, lambda v: min(_relative_gap(a, b) - TIE for a, b in itertools.pairwise(v)))
 
 
 def every(*predicates: Predicate) -> Predicate:

@@ -20,10 +20,11 @@ CLAIMS = (
         "C2.02",
         "2.5",
         "The cause: without the regulation the distance between the end effectors is larger than intended.",
-        greater(f"{LINE}.case1_without.mean_distance", f"{LINE}.case1_with.mean_distance", 1.005),
-        control=greater(f"{LINE}.aligned_without.mean_distance", f"{LINE}.aligned_with.mean_distance", 1.005),
+        greater(f"{LINE}.case1_without_excess", f"{LINE}.case1_with_excess", 3),
+        control=greater(f"{LINE}.aligned_without_excess", f"{LINE}.aligned_with_excess", 3),
         credits="the misaligned start",
         where="2.4.1.1 Case 1",
+        note="By {holding_line.case1_without_excess:.1f} and {holding_line.case1_with_excess:.2f} mm.",
     ),
     Claim(
         "C2.03",
