@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from statistics import NormalDist
+from types import MappingProxyType
 from typing import Any
 
 Metrics = Mapping[str, float | int | None]
@@ -172,7 +173,8 @@ class Claim:
         all agree with the predicate the verdict is "reading-dependent". searched: over which choices of ours a failure
         was searched before it stands.
     by_construction: the generator that has the effect built in. not_testable: why nothing can be measured.
-    note: what a reader must know beside the verdict; ``{experiment.case.metric:.3g}`` in it is filled from the run.
+    note: what a reader must know beside the verdict; ``{experiment.case.metric:.3g}`` in it is filled from the run, a
+        parameter ``{experiment.key}`` or ``{experiment.cases.case.key}`` from its configuration.
     beside: what another experiment of the chapter shows of it, filled likewise where that was run, else left out.
     """
 
@@ -213,8 +215,8 @@ class Claim:
         """Name of the experiment whose metrics the claim is about ("" for one that is not testable)."""
         return self.metrics[0].partition(".")[0] if self.metrics else ""
 
-    def evaluate(self, metrics: Metrics) -> Evaluation:
-        """Verdict, margins and the values they rest on."""
+    def evaluate(self, metrics: Metrics, settings: Mapping[str, Any] = MappingProxyType({})) -> Evaluation:
+        """Verdict, margins and the values they rest on; ``settings`` are the parameters that the note may name."""
 
         def of(predicate: Predicate | None) -> float | None:
             return predicate.margin(metrics) if predicate else None
@@ -243,7 +245,7 @@ class Claim:
             searched=self.searched,
             by_construction=self.by_construction,
             reason=self.not_testable,
-            note=filled(self.note, metrics),
+            note=filled(self.note, {**settings, **metrics}),
         )
 
     def _verdict(
