@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dexrepro.claims import TIE, Claim, Erratum, every, greater, less, ordered, within
+from dexrepro.claims import TIE, Claim, Erratum, about, every, greater, less, ordered, within
 from dexrepro.experiment import Config, changed
 
 numbers = st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6)
@@ -61,6 +61,13 @@ def test_verdicts() -> None:
 def test_a_claim_needs_a_predicate_or_a_reason() -> None:
     with pytest.raises(ValueError, match=r"C1\.04"):
         Claim("C1.04", "1.1", "nothing", None)
+
+
+def test_claims_about_one_figure_share_it_and_its_place_unless_they_say_another() -> None:
+    fig_2_5 = about("2.5", "2.4.1.1")
+    holds = less("e.a.x", 1.0)
+    assert fig_2_5("C2.90", "it holds", holds) == Claim("C2.90", "2.5", "it holds", holds, where="2.4.1.1")
+    assert fig_2_5("C2.91", "it holds", holds, where="2.6").where == "2.6"
 
 
 def test_an_erratum_needs_one_of_the_four_kinds() -> None:

@@ -144,8 +144,10 @@ def test_every_number_that_a_text_takes_from_a_run_is_stored(number: str) -> Non
 
 
 def test_what_a_study_shows() -> None:
-    assert robustness(40, 40) == "robust"
-    assert robustness(16, 16) == "open"
-    assert robustness(8, 16) == "fragile"
+    assert robustness(26, 26) == "robust"
+    assert robustness(25, 25) == "open"
+    assert robustness(9, 16) == "fragile"
+    assert robustness(10, 16) == "open"
+    assert robustness(0, 8) == "fragile"
     assert robustness(90, 100) == "open"
     assert robustness(0, 0) == ""

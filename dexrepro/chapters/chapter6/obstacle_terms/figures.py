@@ -11,10 +11,9 @@ from dexrepro.report import style
 
 FIGURES = {
     "6.D": Figure(
-        "(a) Sub-skill 2 past the triangle: steering [16] with three representations, dynamic potential [39], "
-        "filter and constrained primitive. (b) Steering over the heading error. (c) Distance to a point obstacle "
-        "over the offset of a straight reach. (d) Bars passed by paths that arrive, of five offsets. Ours, on Sect. "
-        "6.5.",
+        "(a) Sub-skill 2 past the triangle: steering [16] with three representations, dynamic potential [39], filter "
+        "and constrained primitive. (b) Steering over the heading error. (c) Distance to a point obstacle over the "
+        "offset of a straight reach. (d) Bars passed by paths that arrive, of five offsets. Ours, on Sect. 6.5.",
         "Paths past a triangle, the steering term over the heading, distances to a point and bars passed, by method.",
     ),
 }

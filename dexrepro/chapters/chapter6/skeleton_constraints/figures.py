@@ -21,9 +21,8 @@ FIGURES = {
         "Stick figure of the synthetic person with the box at six instants.",
     ),
     "6.7": Figure(
-        "Distance of the synthetic person's joints to the median of ten demonstrations (band from smallest to "
-        "largest; left green, right blue) and the 95th percentiles. The book shows the bands; our noise levels set "
-        "the ratio.",
+        "Distance of the synthetic person's joints to the median of ten demonstrations (band from smallest to largest; "
+        "left green, right blue) and the 95th percentiles. The book shows the bands; our noise levels set the ratio.",
         "Bands of distances to the median for wrists, elbows and shoulders, and their percentiles.",
     ),
     "6.8": Figure(

@@ -26,12 +26,11 @@ FIGURES = {
         "Four pictures of the arm passing over the stack.",
     ),
     "7.6": Figure(
-        "Simulated demonstrations on the board. (a) Ordinary reaches (grey) and the "
-        "movement primitive learned from them (blue) from above, and their way along the straight line over time; red: "
-        "learned with the printed sign of D v, which delays it. (b) Muscle "
-        "stiffness likewise. (c-f) Reactions to a low (2 cm) and a tall (8 cm) obstacle, far and close, in three "
-        "directions; d': distance of forward and right at the obstacle in standard deviations. The book's figure "
-        "shows recordings of one person with a joystick.",
+        "Simulated demonstrations on the board. (a) Ordinary reaches (grey) and the movement primitive learned from "
+        "them (blue) from above, and their way along the straight line over time; red: learned with the printed sign "
+        "of D v, which delays it. (b) Muscle stiffness likewise. (c-f) Reactions to a low (2 cm) and a tall (8 cm) "
+        "obstacle, far and close, in three directions; d': distance of forward and right at the obstacle in standard "
+        "deviations. The book's figure shows recordings of one person with a joystick.",
         "Paths in three directions past four obstacles, from above and from the side, and the ordinary reaches.",
     ),
     "7.7": Figure(

@@ -15,9 +15,8 @@ from dexrepro.report.tables import by_case
 
 FIGURES = {
     "8.4": Figure(
-        "Where the broad network for gravity has put its nodes after one revolution, for the three printed "
-        "thresholds, with the circle and the fixed grid of the fuzzy network. The book's figure is a schematic of the "
-        "network.",
+        "Where the broad network for gravity has put its nodes after one revolution, for the three printed thresholds, "
+        "with the circle and the fixed grid of the fuzzy network. The book's figure is a schematic of the network.",
         "Nodes line the circle more densely as the threshold falls; the fixed grid covers the whole square.",
     ),
     "8.6": Figure(
