@@ -228,10 +228,10 @@ class Contents:
 
     def _figure(self, identifier: str, caption: str, alt: str, place: Path, target: Path) -> dict[str, Any]:
         stem = file_stem(identifier)
-        for suffix in (".svg", ".png"):
-            copy(place / "figures" / f"{stem}{suffix}", target / f"{stem}{suffix}")
+        copy(place / "figures" / f"{stem}.png", target / f"{stem}.png")
         _thumbnail(target / f"{stem}.png", target / f"{stem}.webp")
-        head = (target / f"{stem}.svg").read_text("utf-8")
+        drawing = _light((place / "figures" / f"{stem}.svg").read_text("utf-8"))
+        (target / f"{stem}.svg").write_text(drawing, encoding="utf-8")
         return {
             "id": identifier,
             "chapter": self.number,
@@ -240,8 +240,8 @@ class Contents:
             "svg": f"files/{target.name}/{stem}.svg",
             "png": f"files/{target.name}/{stem}.png",
             "thumbnail": f"files/{target.name}/{stem}.webp",
-            "kind": "picture" if "<image" in head else "plot",
-            "size": _size(head),
+            "kind": "picture" if "<image" in drawing else "plot",
+            "size": _size(drawing),
         }
 
     def _table(self, identifier: str, title: str, path: Path, target: Path) -> dict[str, Any]:
@@ -317,6 +317,15 @@ def _thumbnail(source: Path, target: Path) -> None:
         picture = image.convert("RGB")
     picture.thumbnail((THUMBNAIL, THUMBNAIL), Image.Resampling.LANCZOS)
     picture.save(target, quality=70, method=4)
+
+
+def _light(svg: str) -> str:
+    """A drawing with its paths to a hundredth of a point, which nobody sees: a quarter lighter."""
+
+    def rounded(path: re.Match[str]) -> str:
+        return " ".join(re.sub(r"-?\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", path[0]).split())
+
+    return re.sub(r'(?<= d=")[^"]*', rounded, svg)
 
 
 def _size(svg: str) -> tuple[int, int]:

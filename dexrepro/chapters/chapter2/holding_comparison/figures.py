@@ -24,6 +24,7 @@ FIGURES = {
         "The lead lowers the error on Traj. 1 unless the velocity is estimated as printed; on Traj. 2 it does little.",
     ),
 }
+UNITS = {"reference": "m", "estimate": "m, N/m, m/s"}
 TABLES = {"T2.1": "The eighteen simulations of Table 2.1 with their force errors, and our further rows"}
 
 NAMES = {
