@@ -20,6 +20,7 @@ FIGURES = {
         "Most hits are closer to the centres with the proposed mapping, the widest few are its own.",
     ),
 }
+UNITS = {"scale": "1", "tool": "m", "hand": "m"}
 TABLES = {"T1.D": "Scores with the general and the proposed mapping, for several constant scales and ring widths"}
 
 

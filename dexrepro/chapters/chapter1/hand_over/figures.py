@@ -14,6 +14,7 @@ FIGURES = {
         "With a latch the phase changes once, with a bare comparison it changes many times.",
     )
 }
+UNITS = {"force": "N", "sensed": "N", "phase": "1"}
 TABLES = {"T1.G": "Hand-over from the field to the force law"}
 
 

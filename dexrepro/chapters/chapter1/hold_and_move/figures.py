@@ -36,6 +36,10 @@ FIGURES = {
         "Force errors of three laws in four settings: as printed, one late sample, a stiff object, tuned gains.",
     ),
 }
+UNITS = {
+    "force": "N", "measured": "N", "reference": "m", "distance": "m", "partner": "m", "tilt": "rad", "lag": "m",
+    "twist": "rad", "turned": "rad", "pointing": "rad", "slip": "m", "object": "m, m, m, 1, 1, 1, 1", "joints": "rad",
+}  # fmt: skip
 TABLES = {"T1.B": "Force error after the 8th second along three trajectories, beside the book's nine numbers"}
 FILM = Film(
     "t1_proposed", "Two arms lift the ball, tilt and swing it and put it down while the force stays at 15 N.", VIEW,

@@ -30,6 +30,10 @@ FIGURES = {
         "AFR follows the object at a distance, comes to it when DFR does and keeps facing DFR.",
     ),
 }
+UNITS = {
+    "follower": "m", "leader": "m", "object": "m", "seen": "m", "weights": "1", "ready": "m", "facing": "rad",
+    "pointing": "rad", "joints": "rad",
+}  # fmt: skip
 TABLES = {"T1.E": "Potential field: adjustable weights and ablations"}
 FILM = Film(
     "adjustable", "The left arm follows the ball that a person moves, and comes to it when the right arm does; contact "

@@ -16,6 +16,7 @@ FIGURES = {
         "With time counted from the start the law diverges when its step limit is passed.",
     ),
 }
+UNITS = {"lyapunov": "N² s", "change": "N² s", "exact_change": "N² s", "predicted_fall": "N² s", "error": "N"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:

@@ -13,6 +13,7 @@ FIGURES = {
         "With the regulation the force stays at 1 N; without it the force is too small, in case 2 at times zero.",
     ),
 }
+UNITS = {"reference": "m", "estimate": "m, N/m, m/s"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:

@@ -23,7 +23,7 @@ FIGURES = {
         "The estimated rest position follows the true one up to a constant offset of about 5 mm.",
     ),
 }
-UNITS = {"reference": "m", "rest_position": "m"}
+UNITS = {"reference": "m", "rest_position": "m", "estimate": "m, N/m, m/s"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:

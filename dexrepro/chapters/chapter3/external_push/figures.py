@@ -37,6 +37,10 @@ FIGURES = {
         "Without noise a larger gain is always better; with noise there is a best gain.",
     ),
 }
+UNITS = {
+    "push": "N", "tracking": "m", "observed": "N m", "external": "N m", "nodes": "1", "contact": "1, N, m",
+    "error": "m", "rcm_distance": "m",
+}  # fmt: skip
 TABLES = {"T3.B": "Push: laws, models and directions", "T3.C": "Observer gain: lag and relative error"}
 FILM = Film(
     "plus", "A push on the forearm moves the arm by millimetres; it returns when let go.", FILMED,

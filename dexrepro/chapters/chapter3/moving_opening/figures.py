@@ -29,6 +29,10 @@ FIGURES = {
         "The arm follows the moving opening within a few millimetres.",
     ),
 }
+UNITS = {
+    "lid": "m", "centre": "m", "tracking": "m", "observed": "N m", "nodes": "1", "contact": "1, N, m", "error": "m",
+    "rcm_distance": "m",
+}  # fmt: skip
 TABLES = {"T3.D": "Moving opening: laws and models"}
 FILM = Film(
     "track", "The lid moves along a figure of eight while the arm stands in its opening and holds the target.", FILMED,

@@ -21,7 +21,10 @@ FIGURES = {
         "The switch hands over to the robust term only in the transient, and stays below 1 with the square inside.",
     )
 }
-UNITS = {"error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²"}
+UNITS = {
+    "error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²", "usage": "1",
+    "share": "1", "nodes": "1", "feature_energy": "1", "input_norm": "mixed", "input_peak": "mixed", "segment": "1",
+}  # fmt: skip
 TABLES = {
     "T4.B": "The ellipse from an empty network, one change at a time",
     "T4.S": "Changes that turn a verdict of chapter 4",

@@ -26,7 +26,10 @@ FIGURES = {
         "close.",
     ),
 }
-UNITS = {"error": "m", "tip": "m", "reference": "m", "position": "rad", "torque": "N m"}
+UNITS = {
+    "error": "m", "tip": "m", "reference": "m", "position": "rad", "torque": "N m", "usage": "1", "share": "1",
+    "nodes": "1", "activation": "1", "phase": "1",
+}  # fmt: skip
 TABLES = {"T4.C": "Nine trajectories with a hanging payload: errors, bound and nodes by method"}
 FILM = Film(
     "reuse", "With what it learned the arm carries the loose payload from A to D, E and F (drawn hanging straight).",

@@ -56,7 +56,10 @@ FIGURES = {
     "4.9": Figure(WEIGHTS, "Weights for a threshold of 30 settle and ripple at the orbit's frequency."),
     "4.10": Figure(WEIGHTS, "For a threshold of 50 a single node carries the whole estimate."),
 }
-UNITS = {"error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²"}
+UNITS = {
+    "error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²", "usage": "1",
+    "share": "1", "nodes": "1", "feature_energy": "1", "input_norm": "mixed", "input_peak": "mixed", "segment": "1",
+}  # fmt: skip
 TABLES = {"T4.A": "Ellipse after training: errors, oscillation, nodes and gain of every method"}
 
 

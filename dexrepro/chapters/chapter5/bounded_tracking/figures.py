@@ -34,6 +34,7 @@ FIGURES = {
         "Joint errors, share of the bound and joint torques over time under four laws.",
     ),
 }
+UNITS = {"drag": "N", "velocity_error": "rad/s", "desired": "rad", "error": "rad"}
 TABLES = {
     "T5.G": "Tracking of the letter w under compared laws: share of the bound, errors, torque",
     "T5.H": "Sensitivity of the bound to model, contact, sensors and start",

@@ -18,6 +18,7 @@ FIGURES = {
         "Pictures of the arms with the box, its distance from the hands and the palm forces, for two sets of paths.",
     ),
 }
+UNITS = {"palm_left": "N", "palm_right": "N", "middle": "m", "reference_left": "m", "reference_right": "m"}
 TABLES = {"T6.Sd": "Variants of law, squeeze and joint stiffness in carrying the box"}
 FILM = Film(
     "constrained", "Two arms carry the box between flat palms and put it down.",

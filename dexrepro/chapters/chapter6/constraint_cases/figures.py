@@ -19,6 +19,7 @@ FIGURES = {
         "Lyapunov functions and scaled errors over time for four constraint cases, and for (6.17) as printed.",
     ),
 }
+UNITS = {"error": "1", "rate": "1", "lyapunov": "1"}
 TABLES = {"T6.2": "alpha_2 and k_n of the four cases, and the worst dV^c/dt over random states"}
 SYMBOLS = {  # constraint, W in alpha_2 = (xdot^c - f1)/g1 - W/(d_z g1), B in k_n = k_2/d_z + k_z g1^2 B/(4 d_z^2)
     "asymmetric_inside": ("H_l < z1 < H_u", "-z1", "rho/(H_s^2 - z1^2)"),

@@ -19,6 +19,7 @@ FIGURES = {
         "Paths of a reach with a still disk on its way, and distances to a disk that crosses it, under four laws each.",
     ),
 }
+UNITS = {"position": "cm", "centre": "cm", "distance": "cm"}
 TABLES = {"T6.C": "Laws that stay outside of a still and of a moving disk"}
 
 

@@ -19,6 +19,7 @@ FIGURES = {
         "Paths, distances to the reference and Lyapunov functions for the readings of the law and two time constants.",
     ),
 }
+UNITS = {"position": "cm", "reference": "cm", "distance": "cm", "lyapunov": "1", "projected": "1"}
 TABLES = {
     "T6.A": "Laws on the planar map: largest distance, violations, projections, goal error, clearance",
     "T6.S": "Variants that decide whether the constraint is kept without projection",

@@ -46,6 +46,7 @@ FIGURES = {
         "Hand distance over time, constrained and original, with its margin.",
     ),
 }
+UNITS = {"truth": "cm", "original": "cm", "joints": "cm"}
 TABLES = {
     "T6.B": "Error of the joints to the truth, original and constrained, largest of the groups",
     "T6.Sb": "Variants of noise, law and stages of the two-hand calculation",

@@ -22,6 +22,10 @@ FIGURES = {
         "Spectral radius and measured torque travel against the gain, and V over time, logarithmic.",
     ),
 }
+UNITS = {
+    "reference": "rad", "planned": "m", "filtered_error": "rad/s", "impedance": "N m s/rad", "stiffness": "1",
+    "lyapunov": "J",
+}  # fmt: skip
 TABLES = {"T7.B": "Stability against gain, period and model, predicted and measured"}
 
 

@@ -28,6 +28,10 @@ FIGURES = {
         "Torques of three joints, planned and real path, and the error of the tip with and without estimation.",
     ),
 }
+UNITS = {
+    "reference": "rad", "planned": "m", "filtered_error": "rad/s", "impedance": "N m s/rad", "stiffness": "1",
+    "modelled": "N m", "push": "N",
+}  # fmt: skip
 TABLES = {"T7.C": "Tracking under the compared laws"}
 FILM = Film(
     "muscle", "The arm carries the cube past the stack; its tip stays within micrometres of the plan.", desk.CAMERA,

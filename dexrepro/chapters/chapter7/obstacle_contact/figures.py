@@ -19,6 +19,10 @@ FIGURES = {
         "Contact force, a push and the deviations under three pushes, for four impedances with and without estimation.",
     ),
 }
+UNITS = {
+    "reference": "rad", "planned": "m", "filtered_error": "rad/s", "impedance": "N m s/rad", "stiffness": "1",
+    "contact": "N", "predicted": "mm", "push": "N",
+}  # fmt: skip
 TABLES = {"T7.D": "Contact and pushes under constant and variable impedance"}
 
 

@@ -39,6 +39,9 @@ FIGURES = {
         "Muscle stiffness over time for four obstacles, by direction, with the ordinary one.",
     ),
 }
+UNITS = {
+    "ordinary": "cm", "reactions": "cm", "learned": "cm", "stiffness": "1", "traces": "1", "learned_stiffness": "1",
+}  # fmt: skip
 TABLES = {"T7.1": "Factors and experimental conditions, completed, with what the demonstrations do"}
 
 

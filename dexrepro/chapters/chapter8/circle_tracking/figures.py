@@ -40,6 +40,7 @@ FIGURES = {
         "Markers of grown, fixed and constant networks in the plane of adaptation gain and error, both logarithmic.",
     ),
 }
+UNITS = {"reference": "m", "error": "m", "nodes": "1", "network_force": "N", "feature_power": "1"}
 TABLES = {
     "T8.1": "Parameters of the two-link arm and its controller",
     "T8.A": "Circle tracking: every network and H-infinity design",

@@ -38,6 +38,9 @@ FIGURES = {
         "Final compression over the stiffness of the sponge under the optimal gain and under the regulator.",
     ),
 }
+UNITS = {
+    "sponge_force": "N", "reference": "m", "path": "m", "error": "m", "nodes": "1", "gain": "N/m, N", "phase": "1",
+}  # fmt: skip
 TABLES = {
     "T8.E": "Sponge: every method and variant",
     "T8.F": "Algorithm 8.1: iterates of the policy iteration on the sponge",

@@ -45,6 +45,10 @@ FIGURES = {
         "Learned gain and optimum over the stiffness of the object, their difference, and the effect of noise.",
     ),
 }
+UNITS = {
+    "object": "N", "reference": "m", "reference_speed": "m/s", "path": "m", "error": "m", "gain": "N/m, N",
+    "phase": "1", "desired_force": "N",
+}  # fmt: skip
 TABLES = {
     "T8.2": "Algorithm 8.1: iterates of the policy iteration on the unknown object",
     "T8.B": "Contact with the unknown object: every method",
