@@ -7,10 +7,11 @@ credits has been taken away. How often it holds when what the book does not prin
 from __future__ import annotations
 
 import itertools
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from statistics import NormalDist
+from types import MappingProxyType
 from typing import Any
 
 Metrics = Mapping[str, float | int | None]
@@ -38,6 +39,11 @@ class Predicate:
         return self.text
 
 
+TIE = 0.01
+"""Two numbers of runs that are said to be in order, and by no factor, tie where they differ by less than this share of
+the larger; a tie does not hold, in a claim, its control, its printed form and its readings alike."""
+
+
 def _relative_gap(smaller: float, larger: float) -> float:
     scale = max(abs(smaller), abs(larger))
     return (larger - smaller) / scale if scale > 0 else 0.0
@@ -52,10 +58,12 @@ def _operand(value: str | float, factor: float) -> str:
 def less(a: str, b: str | float, factor: float = 1.0) -> Predicate:
     """a < factor * b, where b is a metric or a number. Margin (factor b - a) / max(|a|, |factor b|).
 
-    Against a bound of 0 the margin is 1 or -1, whatever a: it then tells the verdict alone.
+    Of two metrics without a factor the margin is ``TIE`` less. Against a bound of 0 it is 1 or -1, whatever a: it then
+    tells the verdict alone.
     """
     if isinstance(b, str):
-        return Predicate(f"{a} < {_operand(b, factor)}", (a, b), lambda v: _relative_gap(v[0], factor * v[1]))
+        tie = TIE if factor == 1 else 0.0
+        return Predicate(f"{a} < {_operand(b, factor)}", (a, b), lambda v: _relative_gap(v[0], factor * v[1]) - tie)
     bound = factor * b
     return Predicate(f"{a} < {bound:g}", (a,), lambda v: _relative_gap(v[0], bound))
 
@@ -63,7 +71,8 @@ def less(a: str, b: str | float, factor: float = 1.0) -> Predicate:
 def greater(a: str, b: str | float, factor: float = 1.0) -> Predicate:
     """a > factor * b, where b is a metric or a number. Margin (a - factor b) / max(|a|, |factor b|); see ``less``."""
     if isinstance(b, str):
-        return Predicate(f"{a} > {_operand(b, factor)}", (a, b), lambda v: _relative_gap(factor * v[1], v[0]))
+        tie = TIE if factor == 1 else 0.0
+        return Predicate(f"{a} > {_operand(b, factor)}", (a, b), lambda v: _relative_gap(factor * v[1], v[0]) - tie)
     bound = factor * b
     return Predicate(f"{a} > {bound:g}", (a,), lambda v: _relative_gap(bound, v[0]))
 
@@ -76,8 +85,9 @@ def within(a: str, low: float, high: float) -> Predicate:
 
 
 def ordered(*names: str) -> Predicate:
-    """The metrics increase in the order given. Margin: the smallest of the neighbours' margins."""
-    return Predicate(" < ".join(names), names, lambda v: min(_relative_gap(a, b) for a, b in itertools.pairwise(v)))
+    """The metrics increase in the order given, without a ``TIE``. Margin: the smallest of the neighbours' margins."""
+    text = " < ".join(names)
+    return Predicate(text, names, lambda v: min(_relative_gap(a, b) - TIE for a, b in itertools.pairwise(v)))
 
 
 def every(*predicates: Predicate) -> Predicate:
@@ -163,7 +173,8 @@ class Claim:
         all agree with the predicate the verdict is "reading-dependent". searched: over which choices of ours a failure
         was searched before it stands.
     by_construction: the generator that has the effect built in. not_testable: why nothing can be measured.
-    note: what a reader must know beside the verdict; ``{experiment.case.metric:.3g}`` in it is filled from the run.
+    note: what a reader must know beside the verdict; ``{experiment.case.metric:.3g}`` in it is filled from the run, a
+        parameter ``{experiment.key}`` or ``{experiment.cases.case.key}`` from its configuration.
     beside: what another experiment of the chapter shows of it, filled likewise where that was run, else left out.
     """
 
@@ -204,8 +215,8 @@ class Claim:
         """Name of the experiment whose metrics the claim is about ("" for one that is not testable)."""
         return self.metrics[0].partition(".")[0] if self.metrics else ""
 
-    def evaluate(self, metrics: Metrics) -> Evaluation:
-        """Verdict, margins and the values they rest on."""
+    def evaluate(self, metrics: Metrics, settings: Mapping[str, Any] = MappingProxyType({})) -> Evaluation:
+        """Verdict, margins and the values they rest on; ``settings`` are the parameters that the note may name."""
 
         def of(predicate: Predicate | None) -> float | None:
             return predicate.margin(metrics) if predicate else None
@@ -234,7 +245,7 @@ class Claim:
             searched=self.searched,
             by_construction=self.by_construction,
             reason=self.not_testable,
-            note=filled(self.note, metrics),
+            note=filled(self.note, {**settings, **metrics}),
         )
 
     def _verdict(
@@ -262,6 +273,15 @@ class Claim:
         return AFTER_CORRECTION if printed is not None and not printed > 0 else REPRODUCED
 
 
+def about(figure: str, where: str = "", source: str = "book") -> Callable[..., Claim]:
+    """``Claim`` for one figure and place in the book: called without them, it takes what else a claim takes."""
+
+    def claim(id: str, statement: str, predicate: Predicate | None, **more: Any) -> Claim:
+        return Claim(id, figure, statement, predicate, **{"where": where, "source": source, **more})
+
+    return claim
+
+
 def filled(text: str, values: Mapping[str, Any]) -> str:
     """A text whose ``{experiment.case.metric:format}`` are replaced by the run's numbers ("?" where absent)."""
 
@@ -275,21 +295,29 @@ def filled(text: str, values: Mapping[str, Any]) -> str:
 ROBUST, FRAGILE, OPEN = "robust", "fragile", "open"
 SHARE = 0.85
 """A claim is robust where it holds in at least this share of what the book leaves open."""
-LOOKS = (16, 40, 100)
-"""Numbers of draws after which a study is looked at; the bounds hold at 95 % over all of them together."""
+LOOKS = (16, 20, 24, 28, 32, 36, 40, 48, 56, 64, 80, 100)
+"""Numbers of draws after which a study looks at its claims."""
+CHANCES = {ROBUST: 1 / 64, FRAGILE: 1 / 100}
+"""Of a wrong word at any one number of draws; over all numbers up to 100 together less than 0.05 for each word."""
 
 
 def robustness(holds: int, samples: int) -> str:
     """ "robust", "fragile" or "open": what a claim that held in so many samples is shown to be ("" without samples).
 
-    Wilson bounds at 95 % over the looks: each at 1 - 0.05/3 (Bonferroni). 40 of 40 is robust, 16 of 16 is open.
+    Robust is what holds in so many that, were its share below ``SHARE``, so many or more would by a chance of at most
+    1/64; fragile what holds in so few that, were its share ``SHARE``, so few or fewer would by at most 1/100. The
+    binomial tails are exact and hold together at every number of draws up to 100: a study may end at any.
+    26 of 26 is robust, 16 of 16 is open, 9 of 16 is fragile.
     """
     if samples == 0:
         return ""
-    z = NormalDist().inv_cdf(1 - 0.05 / len(LOOKS) / 2)
-    centre = (holds + z * z / 2) / (samples + z * z)
-    half = z / (samples + z * z) * (holds * (samples - holds) / samples + z * z / 4) ** 0.5
-    return ROBUST if centre - half >= SHARE else FRAGILE if centre + half < SHARE else OPEN
+
+    def chance(counts: range) -> float:
+        return sum(math.comb(samples, k) * SHARE**k * (1 - SHARE) ** (samples - k) for k in counts)
+
+    if chance(range(holds, samples + 1)) <= CHANCES[ROBUST]:
+        return ROBUST
+    return FRAGILE if chance(range(holds + 1)) <= CHANCES[FRAGILE] else OPEN
 
 
 @dataclass(frozen=True)

@@ -439,9 +439,8 @@ def _print_check(report: ChapterReport) -> None:
     changed = [claim for claim in report.claims if claim.id in report.verdict_changed]
     out.print(
         f"chapter {report.chapter}: {report.compared} metrics compared, {len(report.drifted)} drifted, "
-        f"{len(report.missing)} missing, {len(report.new)} new, {len(report.skipped)} skipped; "
-        f"{len(report.claims)} claims, {len(changed)} verdicts changed; "
-        f"{report.tables} tables, {len(report.tables_changed)} differences"
+        f"{len(report.missing)} missing, {len(report.new)} new, {len(report.skipped)} skipped; {len(report.claims)} "
+        f"claims, {len(changed)} verdicts changed; {report.tables} tables, {len(report.tables_changed)} differences"
     )
     lines = []
     for entry in report.drifted:

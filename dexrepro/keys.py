@@ -20,7 +20,7 @@ KEYS = {
     "allow": ("MODULE", "modules of somebody else's result that you trust"),
     "claim": ("ID", "the study of one claim's experiment"),
     "study.case": ("NAME", "some cases, by name or pattern, for the claims that are about no other"),
-    "samples": ("NUMBER", "draws; where it is not given, until every claim is decided (16, 40, 100)"),
+    "samples": ("NUMBER", "draws; where it is not given, until every claim is decided (16 to 100)"),
     "hours": ("NUMBER", "begin no draw after so many hours"),
     "tune.case": ("EXPERIMENT.CASE", "the case to be tuned"),
     "compare.case": ("EXPERIMENT.CASE", "the cases, with commas between them, whose law is replaced"),

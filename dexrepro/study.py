@@ -4,7 +4,7 @@ A sample draws every ranged parameter of an experiment, and the seed: scrambled 
 keeps the *metrics* of the cases, each with the key of its simulation, so that claims, controls and printed forms are
 evaluated from samples made earlier: rewording a claim costs nothing, a new case costs that case alone, and only a
 changed simulation runs again; ``confirm`` carries samples over a change of code that changed no number. A study looks
-at 16, 40 and 100 samples and ends when all its claims are decided.
+at its claims every few samples from 16 on, then draws for those alone that are open, and ends when none is, or at 100.
 
 Samples are kept one a line beside the summary; the same study may be started any number of times, on any machine that
 shares the results folder: its processes share the samples.
@@ -19,7 +19,7 @@ import re
 import time
 import zlib
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -189,17 +189,6 @@ def _told(engine: str) -> dict[str, str]:
     return {} if engine == REFERENCE else {"engine": engine}
 
 
-def _is_present(chapter: str, experiment: str, entry: Mapping[str, Any], results: Path, only: Cases = ()) -> bool:
-    """Whether a stored sample has every case that the claims are about, under its present simulation.
-
-    One of another engine counts as long as the cross-check shows that it decides every claim alike.
-    """
-    if "engine" in entry and not crosscheck.agrees_on(experiment, results):
-        return False
-    contents = _contents(chapter, experiment, entry, only)
-    return all(entry["cases"].get(case, {}).get("content") == content for case, content in contents.items())
-
-
 def _contents(chapter: str, experiment: str, entry: Mapping[str, Any], only: Cases = ()) -> dict[str, str]:
     """The key of the present simulation of every case that a claim is about, in one sample."""
     values, block = draw(chapter, experiment, entry["index"])
@@ -214,43 +203,44 @@ def _contents(chapter: str, experiment: str, entry: Mapping[str, Any], only: Cas
 def confirm(chapter: str, experiment: str, results: Path, update: bool = False) -> tuple[int, list[str]]:
     """Carry samples over a change of code: returns how many cases of samples were carried, and the cases that differ.
 
-    The first and the last sample made by other code, of the same draw, run again. A case whose metrics are in both what
-    they were, within the tolerances of the baseline, is the same simulation: its other samples count as such. The
-    samples are those that are shipped where ``update`` renews them, else those among the results.
+    Of every case the first and the last sample made by other code, of the same draw, run again. One whose metrics are
+    in both what they were, within the tolerances of the baseline, is the same simulation: its other samples count as
+    such. The samples are those that are shipped where ``update`` renews them, else those among the results.
     """
     path = _lines(summary_file(experiment, results, update))
     entries = {entry["index"]: entry for entry in (_read(path) if update else _all(experiment, results))}
-    old = [
-        entry
-        for entry in entries.values()
-        if not _is_present(chapter, experiment, entry, results)
-        and entry["values"] == draw(chapter, experiment, entry["index"])[0]
-    ]
+    old: dict[str, list[int]] = {}
+    for index, entry in entries.items():
+        if entry["values"] == draw(chapter, experiment, index)[0]:
+            for case, content in _contents(chapter, experiment, entry).items():
+                if entry["cases"].get(case, {"content": content})["content"] != content:
+                    old.setdefault(case, []).append(index)
+    runs: dict[int, Cases] = {}
+    for case, indices in old.items():
+        for index in {indices[0], indices[-1]}:
+            runs[index] = (*runs.get(index, ()), case)
     again = {
-        entry["index"]: evaluate(chapter, experiment, entry["index"], {}, entry.get("engine", REFERENCE))
-        for entry in old[:1] + old[-1:]
+        index: evaluate(chapter, experiment, index, {}, entries[index].get("engine", REFERENCE), cases)["cases"]
+        for index, cases in runs.items()
     }
     known = baselines.stored(chapter)[experiment].metrics
-    ran = {case for sample in again.values() for case in sample["cases"]}
     same = {
         case
-        for case in ran
+        for case in old
         if all(
-            _is_same(f"{experiment}.{case}", entries[index]["cases"].get(case, {}), sample["cases"][case], known)
-            for index, sample in again.items()
+            _is_same(f"{experiment}.{case}", entries[index]["cases"][case], rows[case], known)
+            for index, rows in again.items()
+            if case in rows
         )
     }
-    carried = 0
-    for entry in old:
-        for case, content in _contents(chapter, experiment, entry).items():
-            if case in same and case in entry["cases"] and entry["cases"][case]["content"] != content:
-                entry["cases"][case]["content"] = content
-                carried += 1
-    if carried:
+    for case in same:
+        for index in old[case]:
+            entries[index]["cases"][case]["content"] = _contents(chapter, experiment, entries[index], (case,))[case]
+    if same:
         path.parent.mkdir(parents=True, exist_ok=True)
         with locked(_folder(results)):
             _write_lines(path, [entries[index] for index in sorted(entries)])
-    return carried, sorted(ran - same)
+    return sum(len(old[case]) for case in same), sorted(old.keys() - same)
 
 
 def _is_same(name: str, old: Mapping[str, Any], new: Mapping[str, Any], known: Mapping[str, Mapping[str, Any]]) -> bool:
@@ -278,7 +268,7 @@ def _rounded(numbers: Mapping[str, float | None]) -> dict[str, float | None]:
     return {key: value if value is None else float(f"{value:.6g}") for key, value in numbers.items()}
 
 
-def _cases_of(claims: Sequence[Claim], cases: Mapping[str, Any], only: Cases = ()) -> list[str]:
+def _cases_of(claims: Sequence[Claim], cases: Iterable[str], only: Cases = ()) -> list[str]:
     """The cases that the claims are about, all as soon as a claim needs a number over several; of them only some."""
     if only:
         return [case for case in cases if case in only]
@@ -323,20 +313,31 @@ def run(
     if samples is not None:
         _refuse_fewer(chapter, experiment, samples, results, target)
     deadline = time.time() + 3600 * hours if hours else float("inf")
-    for look in [samples] if samples is not None else LOOKS:
-        done = _kept(chapter, experiment, results, only=only)
-        with Pool(workers) as pool:
-            for index in (index for index in range(look) if index not in done):
-                pool.add(index, contribute, chapter, experiment, index, results, deadline, engine, only)
+    claims = undecided = chapters.load(chapter).claims_of(experiment)
+    names, failed = list(draw(chapter, experiment, 0)[1]["cases"]), []
+    kept = _kept(chapter, experiment, results, only=only)
+    with Pool(workers) as pool:
+        for look in (0, *([samples] if samples is not None else LOOKS)):  # first at what there is
+            wanted = tuple(case for case in _cases_of(undecided, names) if not only or case in only)
+            lacking = [i for i in range(look) if i not in kept or not {*wanted} <= kept[i]["cases"].keys()]
+            if not lacking and (look or not kept):
+                continue
+            for index in lacking:
+                pool.add(index, contribute, chapter, experiment, index, results, deadline, engine, wanted)
             failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
-        with locked(_folder(results)):  # who ends last sees every sample
-            entries = list(_kept(chapter, experiment, results, only=only).values())
-            found = summary(chapter, experiment, entries)
-            if len(entries) >= _held(target):  # fewer where the hours are over
-                _write_lines(_lines(target), entries)
-                write_json(target, found)
-        if failed or time.time() > deadline or not any(row["word"] == OPEN for row in found["claims"].values()):
-            break
+            with locked(_folder(results)):  # who ends last sees every sample
+                kept = _kept(chapter, experiment, results, only=only) if lacking else kept
+                found = summary(chapter, experiment, list(kept.values()))
+                if len(kept) >= _held(target):  # fewer where the hours are over
+                    _write_lines(_lines(target), list(kept.values()))
+                    write_json(target, found)
+            if failed or time.time() > deadline:
+                break
+            if samples is None:  # what has no number to judge by, after draws of it, has none after more
+                unknown = {"word": OPEN if look == 0 else ""}
+                undecided = [c for c in claims if found["claims"].get(c.id, unknown)["word"] == OPEN]
+                if not undecided:
+                    break
     if failed:
         index, reason = failed[0]
         more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
@@ -365,14 +366,12 @@ def contribute(
 ) -> None:
     """Evaluate one sample and add its line, unless another process does or has done so, or it is too late."""
     with claimed(_folder(results), f"{experiment}.{index}", wait=False) as mine:
-        if not mine or time.time() > deadline or index in _kept(chapter, experiment, results, index, only):
+        if not mine or time.time() > deadline:
             return
-        known = {
-            row["content"]: row
-            for entry in _all(experiment, results)
-            if entry["index"] == index
-            for row in entry["cases"].values()
-        }
+        kept = _kept(chapter, experiment, results, index).get(index, {"cases": {}})["cases"]
+        if only and {*only} <= kept.keys():
+            return
+        known = {row["content"]: row for row in kept.values()}
         line = _line(evaluate(chapter, experiment, index, known, engine, only))
         with locked(_folder(results)), open(_lines(summary_file(experiment, results)), "a+b") as file:
             file.seek(max(file.tell() - 1, 0))
@@ -383,13 +382,27 @@ def contribute(
 def _kept(
     chapter: str, experiment: str, results: Path, number: int | None = None, only: Cases = ()
 ) -> dict[int, dict[str, Any]]:
-    """The samples there are, shipped or made here, of the present simulations, in the order of index."""
-    found = {}
+    """What the samples there are, shipped or made here, hold of the present simulations, in the order of index.
+
+    A sample counts where it has all cases of a claim. One of another engine counts as long as the cross-check shows
+    that it decides every claim alike.
+    """
+    found: dict[int, dict[str, Any]] = {}
     for entry in _all(experiment, results):
-        if number in (None, entry["index"]) and _is_present(chapter, experiment, entry, results, only):
-            cases = {case: row for case, row in entry["cases"].items() if not only or case in only}
-            found[entry["index"]] = {**entry, "values": draw(chapter, experiment, entry["index"])[0], "cases": cases}
-    return dict(sorted(found.items()))
+        index = entry["index"]
+        if number not in (None, index) or ("engine" in entry and not crosscheck.agrees_on(experiment, results)):
+            continue
+        contents = _contents(chapter, experiment, entry, only)
+        rows = {case: row for case, row in entry["cases"].items() if row["content"] == contents.get(case)}
+        before = found.get(index, {"cases": {}})
+        if before["cases"] and before.get("engine") == entry.get("engine"):
+            rows = {**before["cases"], **rows}
+        if len(rows) >= len(before["cases"]):
+            found[index] = {**entry, "values": draw(chapter, experiment, index)[0], "cases": rows}
+    names = list(draw(chapter, experiment, 0)[1]["cases"])
+    about = [{*_cases_of([claim], names)} for claim in chapters.load(chapter).claims_of(experiment)]
+    useful = (index for index, entry in found.items() if any(cases <= entry["cases"].keys() for cases in about))
+    return {index: found[index] for index in sorted(useful)}
 
 
 def _all(experiment: str, results: Path) -> Iterator[dict[str, Any]]:

@@ -18,9 +18,8 @@ ERRORS = (
         "E3.12",
         "(3.25)",
         "error",
-        "x_2d contains + e_2 while e_2 = x_2 - x_2d: the right side is then x_2, and (3.34) is derived without "
-        "the term. "
-        "Solved for e_2 it halves the second error; evaluated one sample late it diverges.",
+        "x_2d contains + e_2 while e_2 = x_2 - x_2d: the right side is then x_2, and (3.34) is derived without the "
+        "term. Solved for e_2 it halves the second error; evaluated one sample late it diverges.",
         "Drop + e_2.",
         switch="fixed_opening.law.printed=true",
         evidence=(f"{FIXED}.virtual1.tracking_error_max", f"{FIXED}.reach1.tracking_error_max"),
@@ -29,10 +28,9 @@ ERRORS = (
         "E3.16",
         "(3.31), bracket",
         "error",
-        "The scale multiplies the whole difference, so R lies along P_R to P_EA: not across the link and not "
-        "the shortest "
-        "distance that Fig. 3.3 and the text describe. Of little consequence here: with the arrows of the reading "
-        "E3.16b it pulls the arm as near as the corrected form does.",
+        "The scale multiplies the whole difference, so R lies along P_R to P_EA: not across the link and not the "
+        "shortest distance that Fig. 3.3 and the text describe. Of little consequence here: with the arrows of the "
+        "reading E3.16b it pulls the arm as near as the corrected form does.",
         "R = P_R P_E - P_EA P_E cos(theta_R) |P_R P_E| / |P_EA P_E|, the foot point's offset; pointing to P_R.",
         switch="fixed_opening.null_space.printed=true",
         evidence=tuple(f"{FIXED}.{c}.rcm_distance_final" for c in ("bracket1", "exactpos1", "exactposfree1")),
@@ -80,10 +78,9 @@ READINGS = (
         "E3.15b",
         "(3.30), J_R",
         "reading",
-        "The Jacobian of the last three joints is a design choice consistent with the text. It leaves out "
-        "joints that move "
-        "the link near the opening; with the tool axis free it makes things worse, with the whole task it "
-        "changes nothing.",
+        "The Jacobian of the last three joints is a design choice consistent with the text. It leaves out joints that "
+        "move the link near the opening; with the tool axis free it makes things worse, with the whole task it changes "
+        "nothing.",
         "Jacobian of the body-fixed nearest point, all joints that move it.",
         switch="fixed_opening.null_space.jacobian=last3",
         evidence=tuple(f"{FIXED}.{case}.rcm_distance_final" for case in ("last3pos1", "exactpos1", "exactposfree1")),
@@ -102,9 +99,8 @@ READINGS = (
         "E3.18",
         "3.5.2, positions",
         "reading",
-        "In experiments 1 and 2 the target is 0.27 m and 0.26 m beside the opening, more than half the box: "
-        "the opening is "
-        "not in the middle of the lid, or the box was moved.",
+        "In experiments 1 and 2 the target is 0.27 m and 0.26 m beside the opening, more than half the box: the "
+        "opening is not in the middle of the lid, or the box was moved.",
         "The box is placed anew for each reach, hole and target inside.",
     ),
     Erratum(

@@ -153,8 +153,7 @@ ERRATA = (
         "6.4.2, 6.4.1",
         "slip",
         "The printed range [24, 25] of the hand distance lies outside of 33 +- 1 ([34, 35] would fit the rest); the "
-        "map "
-        "of 20 x 16 cm is called a square.",
+        "map of 20 x 16 cm is called a square.",
         evidence=(
             "skeleton_constraints.feedforward.hands_constrained_low",
             "skeleton_constraints.feedforward.hands_constrained_high",

@@ -131,8 +131,7 @@ ERRATA = (
         "Ce = -0.4 is negative damping (a reading: with tau_e on the environment only A has the wrong sign, and the "
         "gain is a spring of 358 in place of 344 N/m). With tau_e on the robot the printed gain runs away.",
         "Ce = 0.4, M = -1.",
-        "+sponge.cases.as_printed={interaction:{gain:{_target_:dexrepro.control.impedance_learning.ConstantGain,gain:{"
-        "_target_:dexrepro.control.interaction_optimum.model_gain,model:[7,-0.4,0.001],cost:${sponge.cost}}}}}",
+        "+sponge.cases.as_printed={interaction:{gain:{_target_:dexrepro.control.impedance_learning.ConstantGain,gain:{_target_:dexrepro.control.interaction_optimum.model_gain,model:[7,-0.4,0.001],cost:${sponge.cost}}}}}",
         (f"{SPONGE}.lqr_printed.stopped_at", f"{SPONGE}.lqr_printed_environment.final_compression"),
     ),
     Erratum(

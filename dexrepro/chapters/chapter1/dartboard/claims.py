@@ -3,29 +3,26 @@
 from __future__ import annotations
 
 from dexrepro.chapters.chapter1.statements import OPERATOR
-from dexrepro.claims import Claim, Predicate, Reference, every, greater, less, ordered
+from dexrepro.claims import Claim, Predicate, Reference, about, every, greater, less, ordered
 
 
 def _nobody_lower(case: str) -> Predicate:
     return every(greater(f"dartboard.{case}.wins_median", 6.5), less(f"dartboard.{case}.losses", 0.5))
 
 
+fig_1_14 = about("1.14", "1.5.2.1")
 CLAIMS = (
-    Claim(
+    fig_1_14(
         "C1.13",
-        "1.14",
         "A smaller scale makes the tool more precise.",
         ordered(*(f"dartboard.{case}.general_radius" for case in ("scale1", "scale2", "scale3", "book", "scale6"))),
-        where="1.5.2.1",
         by_construction=OPERATOR,
         note="Median distance of the hits from the centre for constant scales of 1, 2, 3, 4.5 and 6.",
     ),
-    Claim(
+    fig_1_14(
         "C1.14",
-        "1.14",
         "A larger scale gives more reach: the hand moves less for the same task.",
         ordered(*(f"dartboard.{case}.general_excursion" for case in ("scale6", "book", "scale3", "scale2", "scale1"))),
-        where="1.5.2.1",
         by_construction=OPERATOR,
     ),
     Claim(

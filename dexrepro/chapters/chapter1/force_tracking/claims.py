@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dexrepro.chapters.chapter1.statements import CASES
-from dexrepro.claims import Claim, Predicate, every, less
+from dexrepro.claims import Claim, Predicate, about, every, less
 
 TRACKING = "force_tracking"
 
@@ -30,47 +30,41 @@ def _printed(metric: str, bound: float) -> Predicate:
     return less(f"{TRACKING}.c1_printed.{metric}", bound)
 
 
+fig_1_10 = about("1.10", "1.5.1")
 CLAIMS = (
-    Claim(
+    fig_1_10(
         "C1.01",
-        "1.10",
         "The proposed law has the smallest force error of the three controllers in all three cases.",
         _smallest("proposed"),
         control=_smallest("integral"),
         printed=less(f"{TRACKING}.c1_printed.rmse", f"{TRACKING}.c1_force.rmse"),
-        where="1.5.1",
         note="Without its weights the law is an integral of the force error. It has the smallest error of the three as "
         "well: {force_tracking.c1_integral.rmse:.3f}, {force_tracking.c2_integral.rmse:.3f} and "
         "{force_tracking.c3_integral.rmse:.3f} N against {force_tracking.c1_proposed.rmse:.3f}, "
         "{force_tracking.c2_proposed.rmse:.3f} and {force_tracking.c3_proposed.rmse:.3f} N. The win over the whole run "
         "comes from the gain, the win after 5 s from the weights (C1.26, C1.29).",
     ),
-    Claim(
+    fig_1_10(
         "C1.03",
-        "1.10",
         "The reference reaches the position that gives the desired force.",
         _below("proposed", "reference_error", 0.01),
         control=_below("integral", "reference_error", 0.01),
         printed=_printed("reference_error", 0.01),
-        where="1.5.1",
         note="Root mean square of x_r - x_d after 5 s, bound 10 mm of the 200 mm that 10 N ask for. The law without "
         "weights reaches it too.",
     ),
-    Claim(
+    fig_1_10(
         "C1.04",
-        "1.10",
         "It depends little on DFR's motion and on a stiffness of 40 to 60 N/m.",
         _robust("proposed", "spread"),
         control=_robust("integral", "integral_spread"),
         printed=_printed("rmse_late", 0.5),
-        where="1.5.1",
         note="Spread of the whole-run error, which the common start dominates, and an error after 5 s below 5 % of the "
         "desired force. That late error does depend on both: {force_tracking.c1_proposed.rmse_late:.2f}, "
         "{force_tracking.c2_proposed.rmse_late:.2f} and {force_tracking.c3_proposed.rmse_late:.2f} N.",
     ),
-    Claim(
+    fig_1_10(
         "C1.05",
-        "1.10",
         "The force error vanishes, while stiffness and velocity vary too (within 1 % of the desired force).",
         _below("proposed", "rmse_late", 0.1),
         control=_below("integral", "rmse_late", 0.1),
@@ -83,9 +77,8 @@ CLAIMS = (
         "difference quotient: thousands a second), but the weights stay below 0.1 and act as an integral of the force "
         "error of gain alpha N / L with N = Z.Z. What such a proportional-integral law leaves is what is seen.",
     ),
-    Claim(
+    fig_1_10(
         "C1.07",
-        "1.10",
         "The reference can be used without waiting for the weights to converge.",
         _below("proposed", "settling", 5.0),
         control=_below("integral", "settling", 5.0),

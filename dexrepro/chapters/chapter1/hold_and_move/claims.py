@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, Reference, every, less
+from dexrepro.claims import Claim, Predicate, Reference, about, every, less
 
 HOLDING = "hold_and_move"
 TRIALS = ("t1", "t2", "t3")
@@ -28,6 +28,8 @@ PRINTED = {  # RMS force error [N], Section 1.5.2.2: proposed, impedance, fixed 
     "t3": (0.77, 1.31, 1.93),
 }
 
+fig_1_18 = about("1.18", "1.5.2.2")
+ours_1_18 = about("1.18", source="ours")
 CLAIMS = (
     Claim(
         "C1.10",
@@ -42,83 +44,67 @@ CLAIMS = (
         "orientation it starts with. Whether it stays below the bound, which is ours, depends on object and arms "
         "(study).",
     ),
-    Claim(
+    fig_1_18(
         "C1.23a",
-        "1.18",
         "After the 8th second the force error is smallest with the proposed law, on all three trajectories.",
         _least("rmse", "proposed"),
         control=_least("rmse", "integral"),
         printed=less(f"{HOLDING}.t1_printed.rmse", f"{HOLDING}.t1_passive.rmse"),
-        where="1.5.2.2",
         note="Absolute values are set by sensor noise and object; one late sample or a stiff object turns it round. "
         "Without its weights the law errs by {hold_and_move.t1_integral.rmse:.4f} N on the first trajectory, with them "
         "by {hold_and_move.t1_proposed.rmse:.4f} N: at these gains they do nothing.",
     ),
-    Claim(
+    fig_1_18(
         "C1.23b",
-        "1.18",
         "Passive impedance holds better than a fixed distance.",
         _holding("rmse", "passive", "fixed"),
         control=less(f"{HOLDING}.t1_passive_calm.rmse", f"{HOLDING}.t1_fixed_calm.rmse"),
-        where="1.5.2.2",
         note="It does so too with an object in which nothing varies. The printed impedance is close to its stability "
         "limit: where object and arms vary it often loses (study).",
     ),
-    Claim(
+    fig_1_18(
         "C1.24a",
-        "1.18",
         "The proposed law reaches the desired force fastest.",
         _least("settling", "proposed"),
         control=less(f"{HOLDING}.t1_passive_tuned.settling", f"{HOLDING}.t1_proposed.settling"),
         printed=less(f"{HOLDING}.t1_printed.settling", f"{HOLDING}.t1_passive.settling"),
-        where="1.5.2.2",
         note="Into a band of 10 %; the control is the passive impedance with the best of twelve dampings. The first "
         "crossing of 95 % ties with the fixed distance: one speed limit for all.",
     ),
-    Claim(
+    fig_1_18(
         "C1.24b",
-        "1.18",
         "with negligible overshoot.",
         _overshoot("proposed"),
         control=_overshoot("passive"),
         printed=less(f"{HOLDING}.t1_printed.overshoot", 0.1),
-        where="1.5.2.2",
         note="Negligible: within the band of C1.24a; {hold_and_move.t3_proposed.overshoot:.1%} to "
         "{hold_and_move.t2_proposed.overshoot:.1%} here, which is close to it (study).",
     ),
-    Claim(
+    fig_1_18(
         "C1.25",
-        "1.18",
         "The fast rise with negligible overshoot demonstrates that the adaptation law converges fast.",
         every(_least("settling", "proposed"), _overshoot("proposed")),
         control=every(_least("settling", "integral"), _overshoot("integral")),
         credits="the adaptation law (1.29), (1.30)",
         printed=less(f"{HOLDING}.t1_printed.settling", f"{HOLDING}.t1_passive.settling"),
-        where="1.5.2.2",
         note="Without weights the law is as fast, into the band after {hold_and_move.t1_integral.settling:.2f} against "
         "{hold_and_move.t1_proposed.settling:.2f} s, and overshoots as little. The rise is the force term's of (1.32), "
         "whose other terms cancel (1.29) but for W.Z; only at gains below 0.05 do the weights shorten it (T1.S).",
     ),
-    Claim(
+    ours_1_18(
         "C1.31",
-        "1.18",
         "The win survives one more sample of delay in the force measurement.",
         less(f"{HOLDING}.t1_proposed_late.rmse", f"{HOLDING}.t1_passive_late.rmse"),
-        source="ours",
     ),
-    Claim(
+    ours_1_18(
         "C1.32",
-        "1.18",
         "The win survives an object twice as stiff.",
         less(f"{HOLDING}.t1_proposed_stiff.rmse", f"{HOLDING}.t1_passive_stiff.rmse"),
-        source="ours",
     ),
-    Claim(
+    ours_1_18(
         "C1.33",
-        "1.18",
         "The win survives tuning: both laws with the best of twelve gains.",
         less(f"{HOLDING}.t1_proposed_tuned.rmse", f"{HOLDING}.t1_passive_tuned.rmse"),
-        source="ours",
         note="Gains tuned on the holding line without arms (T1.H), compared on the first trajectory of the arms.",
     ),
 )

@@ -2,34 +2,30 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, every, less
+from dexrepro.claims import about, every, less
 
+fig_1_10 = about("1.10", "Eq. (1.44)")
 CLAIMS = (
-    Claim(
+    fig_1_10(
         "C1.06a",
-        "1.10",
         "The Lyapunov function never rises, for the law that knows the contact position.",
         every(less("lyapunov.ideal.rising", 1e-9), less("lyapunov.ideal_compliant.rising", 1e-9)),
         control=less("lyapunov.built.rising", 1e-9),
         printed=less("lyapunov.printed.rising", 1e-9),
-        where="Eq. (1.44)",
     ),
-    Claim(
+    fig_1_10(
         "C1.06b",
-        "1.10",
         "The Lyapunov function never rises, for the law as it can be built.",
         less("lyapunov.built.rising", 1e-9),
         control=less("lyapunov.printed.rising", 1e-9),
         printed=less("lyapunov.printed.rising", 1e-9),
         searched="perfect tracking and tracking through (1.26), steps of 0.1 ms and less",
-        where="Eq. (1.44)",
         note="Eq. (1.31) puts the follower's own position in place of the contact position, which the proof may not: V "
         "rises in {lyapunov.built.rising:.1%} of the steps, although it ends at {lyapunov.built.end:.2g} of "
         "{lyapunov.built.start:.0f}.",
     ),
-    Claim(
+    fig_1_10(
         "C1.34",
-        "1.10",
         "Any positive estimator gain L is stable.",
         every(*(less(f"lyapunov.growth_long.growth_{gain}", 1.0) for gain in ("0p12", "0p15", "0p18", "0p2", "0p3"))),
         control=less("lyapunov.growth_long.growth_m0p05", 1.0),

@@ -51,10 +51,9 @@ CLAIMS = (
         readings={"at the same time, within 1.5 s, as in C1.19": _in_time("adjustable")},
         searched="the tolerance in time, varpi and the compliance of the field",
         where="1.5.2.1",
-        note="Right: when DFR touches, so not before. AFR comes "
-        "{ready_to_hold.adjustable.own_before_partner:.1f} s before it. For any varpi below 2 the field lets AFR touch "
-        "first: at a distance of r / (varpi - 1) > r. With varpi = 2, or with a third of the compliance, it touches "
-        "after DFR (T1.E).",
+        note="Right: when DFR touches, so not before. AFR comes {ready_to_hold.adjustable.own_before_partner:.1f} s "
+        "before it. For any varpi below 2 the field lets AFR touch first: at a distance of r / (varpi - 1) > r. With "
+        "varpi = 2, or with a third of the compliance, it touches after DFR (T1.E).",
     ),
     Claim(
         "C1.21",

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dexrepro.chapters.chapter1.statements import CASES
-from dexrepro.claims import Claim, Predicate, every, greater, less
+from dexrepro.claims import Claim, Predicate, about, every, greater, less
 
 
 def _mostly(law: str) -> Predicate:
     return every(*(greater(f"sensitivity.tracking.best_{law}{case}", 0.5) for case in CASES))
 
 
+ours_1_10 = about("1.10", source="ours")
 CLAIMS = (
     Claim(
         "C1.02",
@@ -23,9 +24,8 @@ CLAIMS = (
         "{sensitivity.tracking.best_proportional_c1:.0%} of the time in case 1, with them "
         "{sensitivity.tracking.best_c1:.0%}. With the printed definition of e_f (E1.10) contact is lost at once.",
     ),
-    Claim(
+    ours_1_10(
         "C1.26",
-        "1.10",
         "The autoregressive part improves the force after the transient.",
         every(
             *(
@@ -33,15 +33,12 @@ CLAIMS = (
                 for k in (1, 2, 3)
             )
         ),
-        source="ours",
         note="Against the same law without weights; over the whole run it does not help in cases 1 and 2.",
     ),
-    Claim(
+    ours_1_10(
         "C1.29",
-        "1.10",
         "The win over the force controller does not come from its smaller gain.",
         every(*(less(f"sensitivity.tracking.equal_c{k}", f"sensitivity.tracking.force_c{k}") for k in (1, 2, 3))),
-        source="ours",
         note="Both at 0.05 m/(s N): the whole-run error of cases 1 and 2 is then smaller with the force controller.",
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less
+from dexrepro.claims import Predicate, about, every, greater, less
 
 MOVING = "balloon_movement"
 
@@ -20,25 +20,23 @@ def _on_the_circle(*laws: str) -> Predicate:
     return every(*(greater(f"{MOVING}.{law}_excess_circle", f"{MOVING}.{law}_excess_line") for law in laws))
 
 
+fig_2_11 = about("2.11", "2.4.2.2")
+ours_2_11 = about("2.11", "2.4.2.2", source="ours")
 CLAIMS = (
-    Claim(
+    fig_2_11(
         "C2.24",
-        "2.11",
         "After adjusting, the two end effectors keep an approximately fixed distance under the proposed law.",
         _fixed_distance("proposed"),
         control=_fixed_distance("no_regulation"),
-        where="2.4.2.2",
         note="The distance scatters by {balloon_movement.proposed.distance_spread:.2g} m; without (2.8), (2.9) by "
         "{balloon_movement.no_regulation.distance_spread:.2g} m.",
     ),
-    Claim(
+    fig_2_11(
         "C2.25",
-        "2.11",
         "The proposed law tracks the force better than force control and passive impedance, owing to the estimation.",
         _best("proposed"),
         control=_best("tuned_force"),
         credits="the movement estimation",
-        where="2.4.2.2",
         note="On the circle {balloon_movement.proposed.rmse_circle:.2f} N against "
         "{balloon_movement.force.rmse_circle:.2f} and {balloon_movement.passive.rmse_circle:.2f} N, all with a force "
         "that fades in. The control is an integral of the force error, which estimates no movement: "
@@ -46,15 +44,13 @@ CLAIMS = (
         "{balloon_movement.tuned_proposed.rmse_circle:.2f} N. NoIm does as well as Im. Depends on the balloon for "
         "passive impedance (C2.34).",
     ),
-    Claim(
+    fig_2_11(
         "C2.26",
-        "2.11",
         "The advantage over both is more obvious on the circle, after about 20 s.",
         _on_the_circle("force", "passive"),
         control=greater(f"{MOVING}.lead_excess_circle", f"{MOVING}.lead_excess_line"),
         readings={"with the best of 40 gains for each law": _on_the_circle("tuned_force", "tuned_passive")},
         searched="printed and tuned gains, the bandwidth of the servo",
-        where="2.4.2.2",
         note="By how much the rivals err more, on the line and on the circle: force control "
         "{balloon_movement.force_excess_line:.2f} and {balloon_movement.force_excess_circle:.2f} N, passive impedance "
         "{balloon_movement.passive_excess_line:.2f} and {balloon_movement.passive_excess_circle:.2f} N; it rings from "
@@ -63,30 +59,21 @@ CLAIMS = (
         "and force control {balloon_movement.tuned_force_excess_line:.3f} and "
         "{balloon_movement.tuned_force_excess_circle:.3f} N. The control is NoIm.",
     ),
-    Claim(
+    ours_2_11(
         "C2.34",
-        "2.11",
         "The order holds for a softer balloon of 80 N/m: the proposed law beats passive impedance.",
         less(f"{MOVING}.soft_proposed.rmse_circle", f"{MOVING}.soft_passive.rmse_circle"),
-        source="ours",
-        where="2.4.2.2",
         note="Against the softer balloon the printed passive impedance is well damped by the arm's lag.",
     ),
-    Claim(
+    ours_2_11(
         "C2.36",
-        "2.11",
         "With gains tuned under one search budget the proposed law beats passive impedance.",
         less(f"{MOVING}.tuned_proposed.rmse_circle", f"{MOVING}.tuned_passive.rmse_circle"),
-        source="ours",
-        where="2.4.2.2",
     ),
-    Claim(
+    ours_2_11(
         "C2.37",
-        "2.11",
         "With gains tuned under one search budget the proposed law beats (integral) force control.",
         less(f"{MOVING}.tuned_proposed.rmse_circle", f"{MOVING}.tuned_force.rmse_circle"),
-        source="ours",
-        where="2.4.2.2",
         note="{balloon_movement.tuned_proposed.rmse_circle:.4f} against {balloon_movement.tuned_force.rmse_circle:.4f} "
         "N with one draw of tremor and sensor noise. Where balloon, sensor and servo vary (study), and on the axis on "
         "which the gains were searched (T2.H), the force law is more often ahead: they are on a par.",

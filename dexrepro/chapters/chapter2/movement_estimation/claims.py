@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dexrepro.chapters.chapter2.statements import ordered_pairs
-from dexrepro.claims import Claim, every, less, within
+from dexrepro.claims import Claim, about, every, less, within
 
 ESTIMATION = "movement_estimation"
 COMPARISON = "holding_comparison"
 
+fig_2_7 = about("2.7", "2.4.1.2 Case 2")
 CLAIMS = (
     Claim(
         "C2.07",
@@ -17,9 +18,8 @@ CLAIMS = (
         control=every(*(less(f"{ESTIMATION}.frozen{k}.settling_time", 2.0) for k in (25, 35, 45))),
         where="2.4.1.2 Case 1",
     ),
-    Claim(
+    fig_2_7(
         "C2.08",
-        "2.7",
         "With a desired force close to 0 the estimated rest position converges to the true one.",
         every(
             *(within(f"{ESTIMATION}.light{s}.estimation_error", -1e-3, 1e-3) for s in (10, 30)),
@@ -27,40 +27,33 @@ CLAIMS = (
         ),
         control=every(*(within(f"{ESTIMATION}.sigma{s}.estimation_error", -1e-3, 1e-3) for s in (10, 30))),
         credits="a desired force close to 0",
-        where="2.4.1.2 Case 2",
         note="In the limit the book names: the offset is proportional to f_d (E2.05).",
     ),
-    Claim(
+    fig_2_7(
         "C2.09",
-        "2.7",
         "The estimation error converges to 0 whatever the partner's speed.",
         every(*(less(f"{ESTIMATION}.light{s}.residual", 2e-4) for s in (10, 30))),
         control=every(*(less(f"{ESTIMATION}.constant{s}.residual", 2e-4) for s in (10, 30))),
-        where="2.4.1.2 Case 2",
         note="Up to the offset f_d (1/khat - 1/k_o), taken off here; the value of f_d in Fig. 2.7 is not printed.",
     ),
-    Claim(
+    fig_2_7(
         "C2.10",
-        "2.7",
         "Convergence takes longer where the partner moves fast (sigma = 10 s).",
         ordered_pairs(("sigma30", "sigma10"), ("sigma40", "sigma10"), metric="early_residual", experiment=ESTIMATION),
         printed=ordered_pairs(
             ("printed30", "printed10"), ("printed40", "printed10"), metric="convergence_time", experiment=ESTIMATION
         ),
         no_control="The speed is all that differs between the runs; at one speed they are one run.",
-        where="2.4.1.2 Case 2",
         note="Clear with time counted from the start ({movement_estimation.printed10.convergence_time:.1f}, "
         "{movement_estimation.printed30.convergence_time:.1f} and "
         "{movement_estimation.printed40.convergence_time:.1f} s to within 1 mm), weak with a window.",
     ),
-    Claim(
+    fig_2_7(
         "C2.11",
-        "2.7",
         "The estimation makes the force error fall into a small range around 0.",
         every(*(less(f"{ESTIMATION}.sigma{s}.rmse", 0.05) for s in (10, 30, 40))),
         control=every(*(less(f"{ESTIMATION}.constant{s}.rmse", 0.05) for s in (10, 30, 40))),
         credits="the estimation of the partner's movement",
-        where="2.4.1.2 Case 2",
         note="The control estimates a constant, at the same rate: an integral of the force error. It errs by "
         "{movement_estimation.constant10.rmse:.3f}, {movement_estimation.constant30.rmse:.3f} and "
         "{movement_estimation.constant40.rmse:.3f} N, the estimation of a movement by "

@@ -30,22 +30,19 @@ FIGURES = {
         "The tool axis turns about the end point towards the line from the opening to the target.",
     ),
     "3.3": Figure(
-        "Elbow, wrist, end point, remote centre and the shortest distance Dis_R, half-way to the target in "
-        "reach 1 with "
-        "the position-only task (simulated). The book shows a sketch.",
+        "Elbow, wrist, end point, remote centre and the shortest distance Dis_R, half-way to the target in reach 1 "
+        "with the position-only task (simulated). The book shows a sketch.",
         "The shortest distance runs from the opening's centre to the foot point on the arm.",
     ),
     "3.4": Figure(
         "The simulated workspace: box of {fixed_opening.box.size.1:g} m x {fixed_opening.box.size.0:g} m x "
-        "{fixed_opening.box.height:g} m, lid with a square hole, cube at the target of "
-        "reach 1. "
-        "The book shows a photograph.",
+        "{fixed_opening.box.height:g} m, lid with a square hole, cube at the target of reach 1. The book shows a "
+        "photograph.",
         "A box with a hole in its lid in front of the robot's right arm.",
     ),
     "3.6": Figure(
-        "Four instants of reach 1 (simulated): start, end point at the remote centre, half-way, at the target. "
-        "The book "
-        "shows photographs of the same steps.",
+        "Four instants of reach 1 (simulated): start, end point at the remote centre, half-way, at the target. The "
+        "book shows photographs of the same steps.",
         "The gripper descends to the opening and passes it to the cube inside the box.",
     ),
     **{
@@ -53,6 +50,7 @@ FIGURES = {
         for n in (1, 2, 3, 4)
     },
 }
+UNITS = {"tracking": "m", "observed": "N m", "nodes": "1", "contact": "1, N, m", "error": "m", "rcm_distance": "m"}
 TABLES = {
     "T3.A": "Fixed opening: every law and model, four reaches",
     "T3.S": "Sensitivity: variants of unprinted values and of the reading, and what becomes of the claims",

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, every, greater, less
+from dexrepro.claims import about, every, greater, less
 
 MOVING = "moving_opening"
 
+fig_3_16 = about("3.16", "3.5.4")
+ours_3_16 = about("3.16", source="ours")
 CLAIMS = (
-    Claim(
+    fig_3_16(
         "C3.12",
-        "3.16",
         "The arm follows the moving opening (Dis_R below 10 mm) and touches neither lid nor box.",
         every(less(f"{MOVING}.track.moving_distance_max", 0.01), less(f"{MOVING}.track.contact_time", 1e-3)),
         by_construction="the gripper's length, by which only the straight tool lies at the opening, is ours, and so is "
         "the hole's side (C3.02, C3.06); with most shorter ones it fails (study)",
-        where="3.5.4",
     ),
-    Claim(
+    ours_3_16(
         "C3.12b",
-        "3.16",
         "With the tool axis left free it follows as well (Dis_R below 10 mm).",
         less(f"{MOVING}.pos.moving_distance_max", 0.01),
-        source="ours",
         note="A spring of 1000 N/m drives the arm into a joint limit.",
     ),
-    Claim(
+    fig_3_16(
         "C3.21",
-        "3.16",
         "The arm tracks the moving remote centre in real time (Dis_R below 10 mm).",
         less(f"{MOVING}.track.moving_distance_max", 0.01),
         control=less(f"{MOVING}.once.moving_distance_max", 0.01),
@@ -37,22 +34,18 @@ CLAIMS = (
         "{moving_opening.late.moving_distance_max:.4f} m off. Whether a control step is computed within its period "
         "depends on the machine (`make bench`).",
     ),
-    Claim(
+    fig_3_16(
         "C3.13",
-        "3.16",
         "It is the null-space control that makes it follow (Dis_R below 10 mm).",
         less(f"{MOVING}.track.moving_distance_max", 0.01),
         control=less(f"{MOVING}.free.moving_distance_max", 0.01),
         credits="the null-space torque",
-        where="3.5.4",
         note="Without it the mean Dis_R is {moving_opening.default_ratio:.2f} times as large: as with the fixed "
         "opening, the orientation rule alone does it.",
     ),
-    Claim(
+    ours_3_16(
         "C3.13b",
-        "3.16",
         "Where the tool axis is left free, the null-space torque more than halves the mean Dis_R.",
         greater(f"{MOVING}.position_ratio", 2.0),
-        source="ours",
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, less
+from dexrepro.claims import Predicate, about, every, less
 
 SETTLING = "settling_time"
 
@@ -23,36 +23,33 @@ def _sooner(case: str) -> Predicate:
     )
 
 
+fig_3_a = about("3.A", "3.3.3")
+ours_3_a = about("3.A", source="ours")
 CLAIMS = (
-    Claim(
+    fig_3_a(
         "C3.14",
-        "3.A",
         "The settling time is bounded by T_max whatever the first error: it no longer grows with it.",
         _fixed("printed"),
         control=_fixed("linear"),
         printed=_fixed("printed", "bound_printed"),
         credits="the terms in SIG",
-        where="3.3.3",
         note="The control, the exponential law of the linear terms, stays below the bound as well, which is "
         "{settling_time.printed.bound:.1f} s (printed constants: {settling_time.printed.bound_printed:.1f} s) where "
         "the longest settling takes {settling_time.printed.settling_max:.2f} s; its time goes on growing. Torque "
         "unlimited, see C3.14b.",
     ),
-    Claim(
+    ours_3_a(
         "C3.14b",
-        "3.A",
         "It does not grow either, by more than a tenth from 1 rad to 10 rad, with the feedback limited to the arm's "
         "torques.",
         less(f"{SETTLING}.limited.settling_10", f"{SETTLING}.limited.settling_1", 1.1),
-        source="ours",
         note="From 1 rad the printed gains ask for {settling_time.printed.torque_1:.0f} N m; within the limits the "
         "arm settles in {settling_time.limited.settling_1:.3g} s from 1 rad and in "
         "{settling_time.limited.settling_10:.3g} s from 10 rad (?: not within the run). What the law adds for the "
         "rate of the virtual velocity is taken to be delivered.",
     ),
-    Claim(
+    fig_3_a(
         "C3.15",
-        "3.A",
         "The fractional and superlinear terms shorten the settling (by a fifth or more, from 0.1 rad and from 1 rad).",
         _sooner("printed"),
         control=_sooner("summed"),
@@ -61,20 +58,16 @@ CLAIMS = (
         note="By about a third with the printed gains, in which the linear terms dominate. The control gives the terms "
         "powers of 1.",
     ),
-    Claim(
+    ours_3_a(
         "C3.15b",
-        "3.A",
         "With K11 and K21 tuned for both laws (25 pairs each, same torque allowed) the law with the terms in SIG still "
         "settles sooner from 1 rad.",
         less(f"{SETTLING}.tuned.settling_1", f"{SETTLING}.tuned_linear.settling_1"),
-        source="ours",
     ),
-    Claim(
+    fig_3_a(
         "C3.18",
-        "3.A",
         "The Lyapunov function does not grow along the error dynamics.",
         less(f"{SETTLING}.printed.growth", 1e-6),
         no_control="an identity of (3.24) to (3.40) for any positive gains; the run checks derivation and integration",
-        where="3.3.3",
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, Reference, every, greater, less
+from dexrepro.claims import Claim, Predicate, Reference, about, every, greater, less
 
 P = "payload_transfer"
 
@@ -41,28 +41,25 @@ def _transfers(trained: str, frozen: str, *untrained: str) -> Predicate:
     )
 
 
+fig_4_12 = about("4.12", "4.6")
 CLAIMS = (
-    Claim(
+    fig_4_12(
         "C4.20",
-        "4.12",
         "The prescribed performance is achieved on all nine trajectories.",
         less(f"{P}.reuse.max_usage", 1.0),
         control=less(f"{P}.no_barrier.max_usage", 1.0),
         credits="the proposed controller, that is, its barrier",
-        where="4.6",
         note="The bound, 0.21 m shrinking to 0.10 m, is so wide that the error takes "
         "{payload_transfer.reuse.max_usage:.0%} of it, {payload_transfer.no_barrier.max_usage:.0%} without the barrier "
         "and {payload_transfer.none.max_usage:.0%} without a network.",
     ),
-    Claim(
+    fig_4_12(
         "C4.21",
-        "4.12",
         "The fixed network oscillates visibly during the whole process, the broad one does not.",
         _oscillates("rbf_wide", "reuse"),
         control=_oscillates("constant", "reuse"),
         readings={"width 1.5": _oscillates("rbf_medium", "reuse")},
         searched="width of the fixed network (0.3, 1.5, 3, 5), whose error decreases with it",
-        where="4.6",
         note="Visibly: by half as much again, and more than without any network; oscillation is the rms rate of the "
         "error. Broad {payload_transfer.reuse.oscillation_mm_s:.0f} mm/s, fixed with the width of least error "
         "{payload_transfer.rbf_wide.oscillation_mm_s:.0f}, with 1.5 "
@@ -80,15 +77,13 @@ CLAIMS = (
         note="{payload_transfer.reuse.rmse_mm:.2f} against {payload_transfer.rbf_wide.rmse_mm:.2f} mm; one constant "
         "node {payload_transfer.constant.rmse_mm:.2f} mm.",
     ),
-    Claim(
+    fig_4_12(
         "C4.22",
-        "4.12",
         "Phase II lies far from the region of the fixed network, so that its training has less effect than phase I's.",
         _less_effect("rbf_wide"),
         no_control="nothing that could be taken away is credited: it says where the printed points lie",
         readings={"width 1.5": _less_effect("rbf_medium"), "width 0.3": _less_effect("rbf_narrow")},
         searched="three widths; a response that is no more than none counts as none",
-        where="4.6",
         note="Largest feature in phases I and II: {payload_transfer.rbf_medium.activation_phase1:.3f} and "
         "{payload_transfer.rbf_medium.activation_phase2:.3f} with width 1.5, "
         "{payload_transfer.rbf_wide.activation_phase1:.2f} and {payload_transfer.rbf_wide.activation_phase2:.2f} with "
@@ -96,27 +91,23 @@ CLAIMS = (
         "reaches {payload_transfer.rbf_medium.points_in_box} of the points A to F; a frame or the reversed fourth "
         "interval may be read wrongly.",
     ),
-    Claim(
+    fig_4_12(
         "C4.23",
-        "4.12",
         "The broad network needs some tens of nodes (58 after phase I, 72 after II) instead of 16384.",
         _few_nodes("reuse"),
         control=_few_nodes("constant"),
         credits="the incremental network",
-        where="4.6",
         note="{payload_transfer.reuse.nodes_phase1} after phase I and {payload_transfer.reuse.nodes_phase2} after II, "
         "the first and the sum of both; the book may mean the nodes added in each (E4.23). The control is one constant "
         "node: {payload_transfer.constant.rmse_mm:.1f} mm against {payload_transfer.reuse.rmse_mm:.1f} mm and "
         "{payload_transfer.rbf_wide.rmse_mm:.1f} mm of the fixed network, so that tens are not needed either.",
     ),
-    Claim(
+    fig_4_12(
         "C4.25",
-        "4.12",
         "What was trained in phases I and II transfers to new trajectories.",
         _transfers("reuse", "frozen", "zero", "nodes"),
         control=_transfers("constant", "constant_frozen", "constant_zero"),
         credits="the knowledge in the broad network",
-        where="4.6",
         note="The control is an integrator: what transfers is mainly the payload's weight. One constant node leaves "
         "{payload_transfer.constant.rmse_mm:.1f} mm trained, {payload_transfer.constant_zero.rmse_mm:.1f} mm untrained "
         "and {payload_transfer.constant_frozen.rmse_mm:.1f} mm with what it learned alone, the broad network "
@@ -124,9 +115,8 @@ CLAIMS = (
         "{payload_transfer.frozen.rmse_mm:.1f} mm; with the nodes of the training and no weights, which have a higher "
         "effective gain than nodes still to come, {payload_transfer.nodes.rmse_mm:.1f} mm.",
     ),
-    Claim(
+    fig_4_12(
         "C4.26",
-        "4.12",
         "One set of controller parameters serves all tasks.",
         _serves_all("reuse"),
         control=_serves_all("rbf_wide"),

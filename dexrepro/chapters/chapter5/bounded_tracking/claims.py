@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less
+from dexrepro.claims import Claim, Predicate, about, every, greater, less
 
 TRACKING = "bounded_tracking"
 LETTERS = ("a", "w", "z", "k", "l", "capital")
@@ -16,6 +16,7 @@ def decays(case: str) -> Predicate:
     return every(less(f"{TRACKING}.{case}.lyapunov_peak", 1.01), less(f"{TRACKING}.{case}.lyapunov_late", 0.05))
 
 
+ours_5_d = about("5.D", source="ours")
 CLAIMS = (
     Claim(
         "C5.18",
@@ -65,25 +66,21 @@ CLAIMS = (
         "{bounded_tracking.integrator.lyapunov_late:.1e}, with the network at "
         "{bounded_tracking.letter_w.lyapunov_late:.1e}.",
     ),
-    Claim(
+    ours_5_d(
         "C5.33",
-        "5.D",
         "With the sign of the network's term corrected and u = 0, the printed law keeps the errors within the limits.",
         within_limits("sign_only"),
-        source="ours",
         control=within_limits("sign_robust"),
         where="5.4.2",
         note="Printed L, and no barrier term in the torque. The control has u = 1.",
     ),
-    Claim(
+    ours_5_d(
         "C5.34",
-        "5.D",
         "The tuned law tracks better than PD control with gravity compensation tuned with the same effort.",
         every(
             *(less(f"{TRACKING}.tuned.tip_rms", f"{TRACKING}.{pd}.tip_rms") for pd in ("pd_tuned", "pd_stiffest")),
             less(f"{TRACKING}.tuned_encoders.tip_rms", f"{TRACKING}.pd_stiffest_encoders.tip_rms"),
         ),
-        source="ours",
         note="16 settings each, chosen on the letter a. The best PD gain, 30 N m/rad, is the largest of the 16: with "
         "300 PD control errs by {bounded_tracking.pd_stiffest.tip_rms:.3f} mm against "
         "{bounded_tracking.pd_tuned.tip_rms:.3f}, and the law with its untuned gains by "
@@ -91,14 +88,12 @@ CLAIMS = (
         "{bounded_tracking.pd_stiffest_encoders.torque_step:.2g} against "
         "{bounded_tracking.tuned_encoders.torque_step:.2g} N m (T5.G, T5.H).",
     ),
-    Claim(
+    ours_5_d(
         "C5.35",
-        "5.D",
         "The network makes the tracking accurate: without it the pen's error is at least ten times larger.",
         greater(f"{TRACKING}.no_network.tip_rms", f"{TRACKING}.letter_w.tip_rms", factor=10.0),
         control=greater(f"{TRACKING}.no_network.tip_rms", f"{TRACKING}.integrator.tip_rms", factor=10.0),
         credits="the network",
-        source="ours",
         note="With one constant node in its place, an integrator at the same effective gain, the error is "
         "{bounded_tracking.integrator.tip_rms:.3f} mm against {bounded_tracking.letter_w.tip_rms:.3f} mm.",
     ),

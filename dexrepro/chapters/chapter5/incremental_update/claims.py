@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, every, greater, less
+from dexrepro.claims import Claim, about, every, greater, less
 
 UPDATE = "incremental_update"
 
+ours_5_g = about("5.G", "Lemma 5.1", source="ours")
 CLAIMS = (
     Claim(
         "C5.28",
@@ -23,22 +24,17 @@ CLAIMS = (
         "{incremental_update.search.operations_idmp:.1e} multiplications and no rollout. One rollout alone, the "
         "control, takes {incremental_update.search.operations_trial:.1e}.",
     ),
-    Claim(
+    ours_5_g(
         "C5.36",
-        "5.G",
         "The incremental update gives the pseudo-inverse of the extended matrix whatever the rank.",
         every(
             *(less(f"{UPDATE}.lemma.{kind}.completed.error", 1e-8) for kind in ("independent", "dependent", "mixed"))
         ),
-        source="ours",
-        where="Lemma 5.1",
     ),
-    Claim(
+    ours_5_g(
         "C5.37",
-        "5.G",
         "Updating costs less than solving anew.",
         every(greater(f"{UPDATE}.cost.saving_first", 1.0), greater(f"{UPDATE}.cost.saving_last", 10.0)),
-        source="ours",
         where="5.3.1",
         note="Multiplications. On nearly dependent features, those of few kernels, repeated updates drift away "
         "from the solution anew (Fig. 5.G).",

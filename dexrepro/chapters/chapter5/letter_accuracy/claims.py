@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less, within
+from dexrepro.claims import Claim, Predicate, about, every, greater, less, within
 
 ACCURACY = "letter_accuracy.default"
 PRINTED_SIGN = "letter_accuracy.printed_damping"
@@ -31,68 +31,60 @@ def on_real_letters(claim: str, more: str = "") -> str:
     return f"On people's own letters (Fig. 5.H) it holds on {{{REAL}.holds.{claim}:.0%}} of the shapes{more}."
 
 
+fig_5_3 = about("5.3", "5.5.1")
+ours_5_a = about("5.A", source="ours")
 CLAIMS = (
-    Claim(
+    fig_5_3(
         "C5.01",
-        "5.3",
         "With 5 kernels a DMP tracks the letter, but badly: by 5 to 25 % of its size.",
         within(f"{ACCURACY}.n5.dmp.mse", 0.04, 1.0),
         control=within(f"{ACCURACY}.n20.dmp.mse", 0.04, 1.0),
         printed=within(f"{PRINTED_SIGN}.n5.dmp.mse", 0.04, 1.0),
         credits="the number of kernels",
-        where="5.5.1",
         note="Root mean square over the letter's 4 cm. With the printed sign of D v the path is no letter at all.",
     ),
-    Claim(
+    fig_5_3(
         "C5.02",
-        "5.3",
         "The DMP+ reduces the error on the same 5 kernels markedly.",
         less(f"{ACCURACY}.n5.dmp_plus.ratio", 0.2),
         control=less(f"{ACCURACY}.n5.dmp_double.ratio", 0.2),
         printed=less(f"{PRINTED_SIGN}.n5.dmp_plus.ratio", 0.2),
         credits="the local biases of truncated kernels",
-        where="5.5.1",
         note="The control is a DMP on twice as many kernels, which has as many weights: its error is "
         "{letter_accuracy.default.n5.dmp_double.ratio:.2f} of the DMP's, the DMP+'s "
         "{letter_accuracy.default.n5.dmp_plus.ratio:.2f}. Fitted by least squares like all others; fitted locally, the "
         "DMP+ loses (T5.S).",
     ),
-    Claim(
+    fig_5_3(
         "C5.03",
-        "5.3",
         "The IDMP improves on the DMP+ with 5 kernels.",
         greater(f"{ACCURACY}.n5.idmp60.beats_dmp_plus", 0.9),
         control=greater(f"{ACCURACY}.n5.dmp_equal.beats_dmp_plus", 0.9),
         printed=greater(f"{PRINTED_SIGN}.n5.idmp60.beats_dmp_plus", 0.9),
         credits=FEATURES,
-        where="5.5.1",
         beside=on_real_letters("C5.03"),
         note="The control is a plain DMP with as many weights: it beats the DMP+ in "
         "{letter_accuracy.default.n5.dmp_equal.beats_dmp_plus:.0%} of the draws, the IDMP in "
         "{letter_accuracy.default.n5.idmp60.beats_dmp_plus:.0%}, and the IDMP beats that DMP in "
         "{letter_accuracy.default.n5.idmp60.beats_dmp_equal:.0%}. The advantage is one of the number of weights.",
     ),
-    Claim(
+    fig_5_3(
         "C5.04",
-        "5.3",
         "All methods are better with 20 kernels than with 5.",
         improves("improves"),
         control=improves("improves_by_chance"),
         printed=improves("improves", PRINTED_SIGN),
         credits="the number of kernels",
-        where="5.5.1",
         note="The control compares each draw with another one of 5 kernels.",
     ),
-    Claim(
+    fig_5_3(
         "C5.05",
-        "5.3",
         "The IDMP is the best of the three with 20 kernels.",
         greater(f"{ACCURACY}.n20.idmp60.beats_dmp_plus", 0.9),
         control=greater(f"{ACCURACY}.n20.dmp_equal.beats_dmp_plus", 0.9),
         printed=greater(f"{PRINTED_SIGN}.n20.idmp60.beats_dmp_plus", 0.9),
         readings={THIRTY: greater(f"{ACCURACY}.n20.idmp30.beats_dmp_plus", 0.9)},
         credits=FEATURES,
-        where="5.5.1",
         beside=on_real_letters("C5.05"),
         note="With 60 added features it beats the DMP+ in {letter_accuracy.default.n20.idmp60.beats_dmp_plus:.0%} of "
         "the draws, with 30 in {letter_accuracy.default.n20.idmp30.beats_dmp_plus:.0%}, with 10 in "
@@ -100,16 +92,14 @@ CLAIMS = (
         "in {letter_accuracy.default.n20.dmp_equal.beats_dmp_plus:.0%}. More choices that turn the order "
         "stand in T5.S.",
     ),
-    Claim(
+    fig_5_3(
         "C5.06",
-        "5.3",
         "With 20 kernels the IDMP's error is much lower: less than half of the DMP+'s.",
         less(f"{ACCURACY}.n20.idmp60.ratio", 0.5),
         control=less(f"{ACCURACY}.n20.dmp_equal.ratio", 0.5),
         printed=less(f"{PRINTED_SIGN}.n20.idmp60.ratio", 0.5),
         readings={THIRTY: less(f"{ACCURACY}.n20.idmp30.ratio", 0.5)},
         credits="the increasing number of added features",
-        where="5.5.1",
         beside=on_real_letters(
             "C5.06",
             f", the error being {{{REAL}.n20.idmp60.ratio.median:.2f}} of the DMP+'s on the median one; the synthetic "
@@ -120,22 +110,19 @@ CLAIMS = (
         "a plain DMP with as many weights as the largest IDMP. The tremor that the smoothing leaves in the letters is "
         "a floor for every method.",
     ),
-    Claim(
+    fig_5_3(
         "C5.07",
-        "5.3",
         "IDMP before DMP+ before DMP, with 5 kernels.",
         greater(f"{ACCURACY}.n5.ordered", 0.9),
         control=greater(f"{ACCURACY}.n5.ordered_equal", 0.9),
         printed=greater(f"{PRINTED_SIGN}.n5.ordered", 0.9),
         readings={THIRTY: greater(f"{ACCURACY}.n5.idmp30.ordered", 0.9)},
-        where="5.5.1",
         beside=on_real_letters("C5.07"),
         note="With as many weights each, the control, the order holds in "
         "{letter_accuracy.default.n5.ordered_equal:.0%} of the draws.",
     ),
-    Claim(
+    fig_5_3(
         "C5.08",
-        "5.3",
         "The IDMP is still limited by the number of initial kernels.",
         limited_by_kernels(ACCURACY, "idmp60", "idmp30"),
         control=limited_by_kernels(ACCURACY, "dmp_fixed", "dmp_fixed"),
@@ -158,22 +145,18 @@ CLAIMS = (
         printed=beyond_dmp_plus("idmp60", PRINTED_SIGN),
         credits="features that depend on the kernels nonlinearly",
         where="Remark 5.2",
-        note="As many plain kernels, the control, lower it as far: "
-        "{letter_accuracy.default.n5.dmp_equal.mse:.1e} against "
-        "{letter_accuracy.default.n5.idmp60.mse:.1e} cm^2. Not to any accuracy: double precision and remaining tremor "
-        "end it.",
+        note="As many plain kernels, the control, lower it as far: {letter_accuracy.default.n5.dmp_equal.mse:.1e} "
+        "against {letter_accuracy.default.n5.idmp60.mse:.1e} cm^2. Not to any accuracy: double precision and remaining "
+        "tremor end it.",
     ),
-    Claim(
+    ours_5_a(
         "C5.10",
-        "5.A",
         "With 20 kernels the IDMP is better than a plain DMP with as many weights.",
         greater(f"{ACCURACY}.n20.idmp60.beats_dmp_equal", 0.5),
-        source="ours",
         note="The book fixes the initial kernels, so this is no claim of its own.",
     ),
-    Claim(
+    fig_5_3(
         "C5.29",
-        "5.3",
         "The state converges to the goal.",
         to_the_goal(ACCURACY),
         where="5.3.1, (5.8)",
@@ -184,33 +167,27 @@ CLAIMS = (
         "training data is {letter_accuracy.no_rest.n20.idmp60.after:.0f} cm away (T5.S, no_rest), with rest "
         "{letter_accuracy.default.n20.idmp60.after:.2f} cm.",
     ),
-    Claim(
+    fig_5_3(
         "C5.30",
-        "5.3",
         "IDMP before DMP+ before DMP, with 20 kernels.",
         greater(f"{ACCURACY}.n20.ordered", 0.9),
         control=greater(f"{ACCURACY}.n20.ordered_equal", 0.9),
         printed=greater(f"{PRINTED_SIGN}.n20.ordered", 0.9),
         readings={THIRTY: greater(f"{ACCURACY}.n20.idmp30.ordered", 0.9)},
-        where="5.5.1",
         beside=on_real_letters("C5.30"),
         note="In {letter_accuracy.default.n20.ordered:.0%} of the draws with 60 added features, in "
         "{letter_accuracy.default.n20.idmp30.ordered:.0%} with 30; with as many weights each, the control, in "
         "{letter_accuracy.default.n20.ordered_equal:.0%}.",
     ),
-    Claim(
+    ours_5_a(
         "C5.31",
-        "5.A",
         "With 5 kernels the IDMP is better than a plain DMP with as many weights.",
         greater(f"{ACCURACY}.n5.idmp60.beats_dmp_equal", 0.5),
-        source="ours",
         note="There the advantage over the DMP is one of the number of weights.",
     ),
-    Claim(
+    ours_5_a(
         "C5.32",
-        "5.A",
         "The IDMP is better than a DMP+ with as many weights, with 5 and with 20 kernels.",
         every(*(greater(f"{ACCURACY}.n{n}.idmp60.beats_dmp_plus_equal", 0.5) for n in (5, 20))),
-        source="ours",
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less
+from dexrepro.claims import Predicate, about, every, greater, less
 
 CROSSING = "obstacle_crossing.default"
 PRINTED_CROSSING = "obstacle_crossing.printed_damping"
@@ -32,21 +32,19 @@ def reaches_goals(case: str, end: str = "end_error", within: float = 0.05) -> Pr
     )
 
 
+fig_5_8 = about("5.8", "5.5.3")
 CLAIMS = (
-    Claim(
+    fig_5_8(
         "C5.21",
-        "5.8",
         "A DMP learns to cross one block; that skill does not cross two or three.",
         one_block_only(CROSSING),
         control=one_block_only(CROSSING, skill=3),
         printed=one_block_only(PRINTED_CROSSING),
-        where="5.5.3",
         note="The control is the skill that was grown for three blocks. With the printed sign of D v the path is "
         "{obstacle_crossing.printed_damping.skill1.rms:.1f} cm from the demonstrated one.",
     ),
-    Claim(
+    fig_5_8(
         "C5.22",
-        "5.8",
         "The curves change less and less until the final one.",
         shrinks(CROSSING),
         control=shrinks("obstacle_crossing.relearn"),
@@ -56,36 +54,30 @@ CLAIMS = (
                 *(less(f"{CROSSING}.skill{b}.largest_step", 1.0) for b in (2, 3))
             ),
         },
-        where="5.5.3",
         note="The path changes less at every step in {obstacle_crossing.default.skill2.shrinks_always:.0%} of the "
         "draws with two blocks and {obstacle_crossing.default.skill3.shrinks_always:.0%} with three.",
     ),
-    Claim(
+    fig_5_8(
         "C5.23",
-        "5.8",
         "The final skills cross two and three blocks.",
         crosses(CROSSING),
         control=every(*(greater(f"{CROSSING}.skill1.over{b}", 0.0) for b in (2, 3))),
         printed=crosses(PRINTED_CROSSING),
-        where="5.5.3",
         note="The control is the skill they were grown from.",
     ),
-    Claim(
+    fig_5_8(
         "C5.24",
-        "5.8",
         "The generalised paths reach all nine goals without touching the obstacle.",
         reaches_goals(CROSSING),
         control=reaches_goals(CROSSING, "missed"),
         printed=reaches_goals(PRINTED_CROSSING),
         credits="the changed goal g",
-        where="5.5.3",
         note="With a constant amplitude where start and goal agree, a known limit of the goal-scaled form; and with "
         "demonstrations that pass well clear, by our choice: with a narrow plateau the clearance is "
         "{obstacle_crossing.narrow_plateau.goals3.clearance:.2f} cm (T5.F).",
     ),
-    Claim(
+    fig_5_8(
         "C5.25",
-        "5.8",
         "The same holds with the forcing scaled by g - x0 on every axis, as printed.",
         reaches_goals("obstacle_crossing.printed_amplitude"),
         control=reaches_goals("obstacle_crossing.printed_amplitude", "missed"),

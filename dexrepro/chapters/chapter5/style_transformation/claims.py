@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dexrepro.chapters.chapter5.statements import TARGETS
-from dexrepro.claims import Claim, Predicate, every, greater, less, within
+from dexrepro.claims import Claim, Predicate, about, every, greater, less, within
 
 STYLES = "style_transformation.default"
 PRINTED_STYLES = "style_transformation.printed_damping"
@@ -29,23 +29,21 @@ def refined(measure: str, case: str = STYLES) -> Predicate:
     return every(*(less(f"{case}.{letter}.{measure}", 0.8) for letter in TARGETS))
 
 
+fig_5_6 = about("5.6", "5.5.2")
 CLAIMS = (
-    Claim(
+    fig_5_6(
         "C5.11",
-        "5.6",
         "The shapes move gradually from a to the target as features are added.",
         gradual(STYLES),
         control=gradual("style_transformation.relearn"),
         printed=gradual("style_transformation.printed_start"),
         readings={"both blocks of weights learned anew, as (5.29) has it": gradual("style_transformation.relearn")},
-        where="5.5.2",
         note="With the weights of the new features alone, as line 18 of Algorithm 5.1 has it. (5.29) as a whole, its "
         "start corrected, jumps with the first five features to "
         "{style_transformation.relearn.z.first_step:.1%} of the distance to z; as printed it leads away from it.",
     ),
-    Claim(
+    fig_5_6(
         "C5.12",
-        "5.6",
         "Shapes near the centre resemble a more.",
         of_all("leaves_base", 0.9),
         control=of_all("leaves_base", 0.9, "style_transformation.relearn"),
@@ -54,23 +52,19 @@ CLAIMS = (
             f"{count} initial kernels": of_all("leaves_base", 0.9, f"style_transformation.n{count}")
             for count in (15, 20, 30, 40)
         },
-        where="5.5.2",
         note="At every step in every draw with 25 kernels, whose number the book does not print; with 20, k does so in "
         "{style_transformation.n20.k.leaves_base:.0%} of the draws.",
     ),
-    Claim(
+    fig_5_6(
         "C5.13",
-        "5.6",
         "After 30 added features the letters are clearly distinguishable.",
         distinct(STYLES),
         control=distinct(STYLES, "_first"),
         printed=distinct(PRINTED_STYLES),
-        where="5.5.2",
         note="The control asks the same after the first five features.",
     ),
-    Claim(
+    fig_5_6(
         "C5.14",
-        "5.6",
         "z and k arrive early, w and l late.",
         greater(f"{STYLES}.early_order", 0.5),
         readings={
@@ -81,21 +75,18 @@ CLAIMS = (
         },
         searched="initial kernels from 15 to 40, and 24 hands whose via points move by a tenth of the letters' size",
         no_control="the order is a property of the shapes written, which the book shows and does not print",
-        where="5.5.2",
         note="Distance left after 15 features: z {style_transformation.default.z.after15:.2f}, k "
         "{style_transformation.default.k.after15:.2f}, w {style_transformation.default.w.after15:.2f}, l "
         "{style_transformation.default.l.after15:.2f}. Of 24 hands with other shapes "
         "{style_transformation.shapes.early_order:.0%} give the book's order; by chance a sixth would.",
     ),
-    Claim(
+    fig_5_6(
         "C5.15",
-        "5.6",
         "Small differences to the demonstrations remain after 30 features, a compromise between the letters.",
         small_difference(STYLES),
         control=small_difference("style_transformation.alone", ("w",)),
         printed=small_difference(PRINTED_STYLES),
         credits="features common to all letters",
-        where="5.5.2",
         note="For a letter alone on the same features, the control, the difference is the same: w "
         "{style_transformation.alone.w.final:.3f} cm alone, {style_transformation.default.w.final:.3f} cm with three "
         "others. Each letter's weights are fitted on their own; the features are random and too few.",
@@ -113,17 +104,15 @@ CLAIMS = (
         "{real_handwriting.default.weights_alone.pointwise:.0%} of the pairs, mixing start and goal too in "
         "{real_handwriting.default.mixed.pointwise:.0%} (Fig. 5.H).",
     ),
-    Claim(
+    fig_5_6(
         "C5.17",
-        "5.6",
         "The old skill is preserved and can be recovered by taking the new terms away.",
         greater(f"{STYLES}.recovered", 0.5),
         where="5.1 (a), 5.3.1",
         by_construction="old and new weights are stored apart",
     ),
-    Claim(
+    fig_5_6(
         "C5.38",
-        "5.6",
         "A skill that was generalised to a style can be refined further for that style: a fifth less is left, or more.",
         refined("refined"),
         control=refined("again"),

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, every, less
+from dexrepro.claims import about, every, less
 
 COUPLED = "coupled_primitives"
 
+ours_table_6_1 = about("T6.1", "Table 6.1", source="ours")
 CLAIMS = (
-    Claim(
+    ours_table_6_1(
         "C6.46",
-        "T6.1",
         "Velocity coupling [20] holds the distance of two agents the better the stronger it is; [19] improves on it.",
         every(
             less(f"{COUPLED}.distance_10.size", f"{COUPLED}.distance_off.size"),
@@ -17,17 +17,12 @@ CLAIMS = (
             less(f"{COUPLED}.force_10.size", f"{COUPLED}.distance_10.size"),
             less(f"{COUPLED}.force_30.size", f"{COUPLED}.force_20.size"),
         ),
-        source="ours",
-        where="Table 6.1",
         note="The error at the end is {coupled_primitives.force_30.end_error:.2g} cm with [19], "
         "{coupled_primitives.distance_50.end_error:.1g} cm with [20].",
     ),
-    Claim(
+    ours_table_6_1(
         "C6.47",
-        "T6.1",
         "The force coupling of [17] brings the force on a surface nearer to its set value.",
         less(f"{COUPLED}.surface_pi.size", f"{COUPLED}.surface_off.size", 0.5),
-        source="ours",
-        where="Table 6.1",
     ),
 )

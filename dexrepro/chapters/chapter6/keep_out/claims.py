@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less
+from dexrepro.claims import Predicate, about, every, greater, less
 
 OUT = "keep_out"
 
@@ -14,18 +14,16 @@ def passes(*cases: str) -> Predicate:
     )
 
 
+fig_6_c = about("6.C", "6.5, point 2")
 CLAIMS = (
-    Claim(
+    fig_6_c(
         "C6.30",
-        "6.C",
         "Moving obstacles are passed with a forecast, a detour as reference and a tube about it.",
         passes(*(f"moving_detour_{law}" for law in ("consistent", "printed", "feedforward"))),
-        where="6.5, point 2",
         by_construction="the detour clears the forecast obstacle by the margin",
     ),
-    Claim(
+    fig_6_c(
         "C6.35",
-        "6.C",
         "With the outside constraints of Table 6.2 about an obstacle, the path converges to the goal (Remark 6.2).",
         every(
             *(
@@ -43,13 +41,11 @@ CLAIMS = (
         "cm from the goal. The safety filter arrives. A limit of Remark 6.2, which assumes that the reference goes "
         "to the goal: an obstacle does not.",
     ),
-    Claim(
+    fig_6_c(
         "C6.50",
-        "6.C",
         "Several convex obstacles on the way are passed about one continuous reference.",
         passes("several_detour"),
         control=passes("several_alone"),
-        where="6.5, point 2",
         by_construction="the detour clears every obstacle by the margin",
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less
+from dexrepro.claims import Predicate, about, every, greater, less
 
 TERMS = "obstacle_terms"
 
@@ -17,32 +17,29 @@ def dearer(than: str, operations: str = "operations") -> Predicate:
     return greater(f"{TERMS}.constrained.{operations}", f"{TERMS}.{than}")
 
 
+fig_6_d = about("6.D", "6.5, point 1")
+ours_6_d = about("6.D", "6.5, point 2", source="ours")
 CLAIMS = (
-    Claim(
+    fig_6_d(
         "C6.25",
-        "6.D",
         "The steering term of [16] has a dead zone around a head-on approach.",
         less(f"{TERMS}.centroid.aligned_distance", 0.1),
         control=less(f"{TERMS}.potential.aligned_distance", 0.1),
         readings={
             "offsets of a millionth of a centimetre and more": less(f"{TERMS}.centroid.nearly_aligned_distance", 0.1)
         },
-        where="6.5, point 1",
         note="For exact alignment with a point only: from an offset of 1e-6 cm on the path passes at "
         "{obstacle_terms.centroid.nearly_aligned_distance:.2f} cm. The potential of [39], the control, keeps "
         "{obstacle_terms.potential.aligned_distance:.2f} cm off even an aligned point.",
     ),
-    Claim(
+    fig_6_d(
         "C6.26",
-        "6.D",
         "The reaction of the steering term fades as the heading narrows towards the obstacle.",
         less(f"{TERMS}.steering_at_001", f"{TERMS}.steering_peak", 0.25),
-        where="6.5, point 1",
         by_construction="an identity: phi exp(-beta phi) vanishes with phi",
     ),
-    Claim(
+    fig_6_d(
         "C6.27",
-        "6.D",
         "The methods of [16] and [39] do not suit non-point obstacles (bars of a half-width of 2 cm or more).",
         blocked("passed", *STEERING, "potential"),
         control=blocked("passed", *STEERING, widths=(3,)),
@@ -55,9 +52,8 @@ CLAIMS = (
         "{obstacle_terms.centroid.bars_tuned_20mm:.0f}); [39] stops before them "
         "({obstacle_terms.potential.bars_tuned_20mm:.0f}). The control has bars of 3 mm.",
     ),
-    Claim(
+    fig_6_d(
         "C6.28",
-        "6.D",
         "The calculation of the constrained primitive is more complex than that of [16] and [39].",
         every(dearer("centroid.operations"), dearer("potential.operations")),
         control=every(
@@ -79,32 +75,25 @@ CLAIMS = (
         "about 30; [39], whose gradient is taken by differences, {obstacle_terms.potential.operations_point:.0f} "
         "about one point and {obstacle_terms.potential.operations:.0f} about the closest one.",
     ),
-    Claim(
+    fig_6_d(
         "C6.29",
-        "6.D",
         "A bound of the measurement noise can be added to the margin.",
         every(less(f"{TERMS}.constrained.noise_excess", 0.0), greater(f"{TERMS}.constrained.noise_clearance", 0.0)),
         where="6.5, point 3",
         by_construction="the triangle inequality: the margin is kept about a reference that errs by the noise at most",
     ),
-    Claim(
+    ours_6_d(
         "C6.43",
-        "6.D",
         "Tuned over 20 settings, steering passes the triangle with every representation of it.",
         every(*(greater(f"{TERMS}.{name}.tuned_clearance", 0.0) for name in ("centroid", "closest", "boundary"))),
-        source="ours",
-        where="6.5, point 2",
     ),
-    Claim(
+    ours_6_d(
         "C6.44",
-        "6.D",
         "The dynamic potential of [39] with the closest point passes the triangle and stops before every bar.",
         every(
             greater(f"{TERMS}.potential.clearance", 0.0),
             less(f"{TERMS}.potential.goal_error", 0.2),
             *(less(f"{TERMS}.potential.bars_passed_{w}mm", 0.5) for w in (3, 6, 10, 15, 20, 30)),
         ),
-        source="ours",
-        where="6.5, point 2",
     ),
 )

@@ -11,10 +11,9 @@ from dexrepro.report import style
 
 FIGURES = {
     "6.D": Figure(
-        "(a) Sub-skill 2 past the triangle: steering [16] with three representations, dynamic potential [39], "
-        "filter and constrained primitive. (b) Steering over the heading error. (c) Distance to a point obstacle "
-        "over the offset of a straight reach. (d) Bars passed by paths that arrive, of five offsets. Ours, on Sect. "
-        "6.5.",
+        "(a) Sub-skill 2 past the triangle: steering [16] with three representations, dynamic potential [39], filter "
+        "and constrained primitive. (b) Steering over the heading error. (c) Distance to a point obstacle over the "
+        "offset of a straight reach. (d) Bars passed by paths that arrive, of five offsets. Ours, on Sect. 6.5.",
         "Paths past a triangle, the steering term over the heading, distances to a point and bars passed, by method.",
     ),
 }
@@ -79,13 +78,10 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         d.plot(passed.index, passed, marker=".", **style.LINES[lines[case]])
     d.set(xlabel="Half-width of the bar [cm]", ylabel="Bars passed, of 5 [-]", ylim=(-0.2, 5.3))
     figure.legend(*a.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=6.5)
-    for letter, axes, text in zip(
-        "abcd", (a, b, c, d), ("past the triangle", "steering term", "point obstacle", "bars")
-    ):
-        style.panel(axes, letter, text)
+    style.panels((a, b, c, d), "past the triangle", "steering term", "point obstacle", "bars")
     near, width = (metrics["centroid"][f"{name}aligned_distance"] or 0 for name in ("", "nearly_")), 20
     best = max(metrics[case][f"bars_passed_{width}mm"] or 0 for case in ("centroid", "closest", "boundary"))
     tuned = max(metrics[case][f"bars_tuned_{width}mm"] or 0 for case in ("centroid", "closest", "boundary"))
     text = "Steering passes a point ahead at {:.2f} cm, beside it at {:.2f} cm".format(*near)
-    style.title(figure, f"{text}; it passes {best} of 5 bars of half-width {width} mm, tuned {tuned}")
-    return {"6.D": figure}
+    passes = f"{best} of 5 bars of half-width {width} mm, tuned {tuned}"
+    return {"6.D": style.title(figure, f"{text}; it passes {passes}")}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less, within
+from dexrepro.claims import Claim, Predicate, about, every, greater, less, within
 
 LAW = "planar_constraint"
 READINGS = ("consistent", "printed", "feedforward")
@@ -36,10 +36,11 @@ def never_rises(case: str) -> Predicate:
     return less(f"{LAW}.{case}.v_rises", 0.5)
 
 
+fig_6_2d = about("6.2d", "6.4.1")
+ours_6_2d = about("6.2d", "6.3.3", source="ours")
 CLAIMS = (
-    Claim(
+    fig_6_2d(
         "C6.06",
-        "6.2d",
         "Under the conditions (6.23) the path stays within 0.5 of the reference.",
         in_tube(*READINGS),
         control=in_tube("no_barrier"),
@@ -47,24 +48,20 @@ CLAIMS = (
         where="6.4.1, (6.23)",
         note="With tau = the segment's duration the largest distance is {planar_constraint.feedforward.e_max:.4f} cm "
         "with the barrier and {planar_constraint.no_barrier.e_max:.4f} cm without: the tracking gains do the work. "
-        "With tau = 1 s they alone leave the tube ({planar_constraint.tau1_no_barrier.e_max:.2f} cm), and the "
-        "barrier as weighted in (6.9) is left by {planar_constraint.tau1_feedforward.violated_groups:.0f} groups of "
-        "six.",
+        "With tau = 1 s they alone leave the tube ({planar_constraint.tau1_no_barrier.e_max:.2f} cm), and the barrier "
+        "as weighted in (6.9) is left by {planar_constraint.tau1_feedforward.violated_groups:.0f} groups of six.",
     ),
-    Claim(
+    fig_6_2d(
         "C6.07",
-        "6.2d",
         "The distance to the reference is largest at the arc and vanishes quickly after it.",
         at_the_arc("printed", "feedforward"),
         control=at_the_arc("none"),
-        where="6.4.1",
         note="Back within 0.05 cm {planar_constraint.feedforward.settle_after_arc:.2f} s after the arc; the primitive "
         "without extra term, the control, after {planar_constraint.none.settle_after_arc:.2f} s. Void for the "
         "consistent law, which never leaves the reference.",
     ),
-    Claim(
+    fig_6_2d(
         "C6.09",
-        "6.2d",
         "The constraint (6.7) is never violated, from any start inside of it.",
         kept("consistent", "tau1_consistent", "consistent_off", "consistent_fast"),
         control=kept("consistent_no_barrier"),
@@ -100,9 +97,8 @@ CLAIMS = (
         note="Under the law the error has the poles k_z / d_z and k_2, 6 and 10 1/s, a damping ratio of "
         "{planar_constraint.feedforward.damping_error:.3f} on which alpha_z has no influence (E6.17).",
     ),
-    Claim(
+    fig_6_2d(
         "C6.12",
-        "6.2d",
         "The constrained path converges to the goal.",
         arrives(*READINGS),
         control=arrives("stray"),
@@ -112,44 +108,35 @@ CLAIMS = (
         "reference that misses the goal by 1 cm, the control, the path ends {planar_constraint.stray.goal_error:.2f} "
         "cm off it.",
     ),
-    Claim(
+    fig_6_2d(
         "C6.14",
-        "6.2d",
         "The extra term does not influence the learned skill: the weights stay as they are.",
         every(*(less(f"{LAW}.{law}.weights_changed", 1e-12) for law in READINGS)),
         where="6.5",
         by_construction="the extra term acts on the movement, nothing is learned anew",
         note="What the skill still contributes to the movement is another matter, see C6.36.",
     ),
-    Claim(
+    fig_6_2d(
         "C6.15",
-        "6.2d",
         "The constrained path clears all obstacles.",
         clears(*READINGS),
         control=clears("none"),
-        where="6.4.1",
     ),
-    Claim(
+    ours_6_2d(
         "C6.34",
-        "6.2d",
         "With the discrete projection the constraint is kept by every reading, margin and time constant tried.",
         kept(*(f"{set_up}_{law}_projected" for set_up in ("narrow", "tau1") for law in ("printed", "feedforward"))),
-        source="ours",
-        where="6.3.3",
         by_construction="the projection puts a step beyond the barrier back",
     ),
-    Claim(
+    ours_6_2d(
         "C6.36",
-        "6.2d",
         "The constrained movement still depends on the learned weights under every reading of the law.",
         every(*(greater(f"{LAW}.{law}.weight_effect", 0.01) for law in READINGS)),
-        source="ours",
         where="6.5",
         note="Not under the consistent law, the one that the proof holds for: it cancels the primitive altogether.",
     ),
-    Claim(
+    ours_6_2d(
         "C6.38",
-        "6.2d",
         "With tau = 1 s the tracking gains alone leave the tube; a barrier weighted by H^2 keeps it (law with the "
         "recorded acceleration).",
         every(
@@ -158,15 +145,13 @@ CLAIMS = (
             kept("tau1_feedforward_h2"),
         ),
         control=every(greater(f"{LAW}.no_barrier.e_share", 1.0), kept("feedforward")),
-        source="ours",
         where="(6.9)",
         note="The path rides the barrier, at {planar_constraint.tau1_feedforward_h2.e_share:.4f} of the tube; the "
         "literal law (6.15) with that weight leaves it at steps of 1 ms in "
         "{planar_constraint.tau1_printed_h2.violated_groups:.0f} groups of six, which is a matter of sampling.",
     ),
-    Claim(
+    fig_6_2d(
         "C6.39",
-        "6.2d",
         "V^c never increases.",
         every(never_rises("consistent"), never_rises("consistent_off")),
         control=never_rises("none"),
@@ -181,9 +166,8 @@ CLAIMS = (
         "from a start 0.45 cm off; as printed in up to {planar_constraint.printed.v_rises:.0f} steps, with the "
         "recorded acceleration in up to {planar_constraint.feedforward.v_rises:.0f}.",
     ),
-    Claim(
+    fig_6_2d(
         "C6.48",
-        "6.2d",
         "Only part of the previous path is modified.",
         every(*(less(f"{LAW}.{law}.modified_share", 0.5) for law in READINGS)),
         control=less(f"{LAW}.feedforward.extended_modified_share", 0.5),
@@ -191,9 +175,8 @@ CLAIMS = (
         note="{planar_constraint.feedforward.modified_share:.0%} of sub-skill 2 lies off the previous path; of its "
         "extended primitive, the control, {planar_constraint.feedforward.extended_modified_share:.0%}.",
     ),
-    Claim(
+    fig_6_2d(
         "C6.49",
-        "6.2d",
         "Where an interval begins inside of its bounds, as the junction condition has it, the constraint is kept "
         "from the start.",
         kept("junction"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less, within
+from dexrepro.claims import Claim, Predicate, about, every, greater, less, within
 
 SKILL = "planar_skill"
 
@@ -14,10 +14,10 @@ def crosses_old(case: str) -> Predicate:
     )
 
 
+fig_6_2a = about("6.2a", "6.4.1")
 CLAIMS = (
-    Claim(
+    fig_6_2a(
         "C6.01",
-        "6.2a",
         "The demonstrations are cut into the two sub-skills.",
         every(
             within(f"{SKILL}.book.pauses_fewest_min", 0.5, 1.5),
@@ -25,27 +25,22 @@ CLAIMS = (
             less(f"{SKILL}.book.pause_error_max", 0.3),
         ),
         control=within(f"{SKILL}.book.pauses_in_one_max", 0.5, 1.5),
-        where="6.4.1",
         note="Pauses stand in for the book's BP-AR-HMM: where they lie and how many there are is found, in every "
         "demonstration one, within {planar_skill.book.pause_error_max:.2f} s; in a sub-skill alone, the control, none. "
         "The skills are learned from the change point of a library, which is told that there is one and errs by up to "
         "{planar_skill.book.segmentation_error_max:.2f} s; with a penalty in place of the number it cuts the curved "
         "strokes as well.",
     ),
-    Claim(
+    fig_6_2a(
         "C6.02",
-        "6.2a",
         "The learned path collides with the new block but not with the old obstacles.",
         every(less(f"{SKILL}.book.clearance_new_max", 0.0), greater(f"{SKILL}.book.clearance_old_min", 0.0)),
-        where="6.4.1",
         by_construction="the block was placed across the demonstrations",
     ),
-    Claim(
+    fig_6_2a(
         "C6.03",
-        "6.2a",
         "The new block concerns the second sub-skill alone.",
         greater(f"{SKILL}.book.clearance_first_new_min", 1.0),
-        where="6.4.1",
         by_construction="the block was placed across the demonstrations",
     ),
     Claim(

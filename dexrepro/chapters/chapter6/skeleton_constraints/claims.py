@@ -56,8 +56,7 @@ CLAIMS = (
         "hidden elbow is far from where it should be; projected they stay within "
         "{skeleton_constraints.feedforward.length_error_constrained:.2f} and "
         "{skeleton_constraints.printed.length_error_constrained:.2f} cm. The references of the stages alone, geometry "
-        "without any primitive (the control), err by "
-        "{skeleton_constraints.geometry.length_error_constrained:.3f} cm.",
+        "without any primitive (the control), err by {skeleton_constraints.geometry.length_error_constrained:.3f} cm.",
     ),
     Claim(
         "C6.21",

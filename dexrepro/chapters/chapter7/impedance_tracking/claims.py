@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less
+from dexrepro.claims import Claim, Predicate, about, every, greater, less
 
 TRACKING = "impedance_tracking"
 PRINTED_LAW = greater(f"{TRACKING}.printed.finished", 0.5)
@@ -23,38 +23,34 @@ def absorbs(exact: str, encoders: str) -> Predicate:
     return every(*(less(f"{TRACKING}.{case}.rms_error", f"{TRACKING}.{plain}.rms_error", 0.1) for case, plain in pairs))
 
 
+fig_7_11 = about("7.11", "7.4.3")
+ours_7_11 = about("7.11", source="ours")
 CLAIMS = (
-    Claim(
+    fig_7_11(
         "C7.26",
-        "7.11",
         "Adaptive impedance keeps the arm stable.",
         stable("muscle"),
         control=stable("constant_mean"),
         credits="the adaptive impedance",
         printed=PRINTED_LAW,
-        where="7.4.3",
         note="Errors {impedance_tracking.muscle.rms_error:.2g} mm, with a constant K of the same mean "
         "{impedance_tracking.constant_mean.rms_error:.2g} mm.",
     ),
-    Claim(
+    fig_7_11(
         "C7.27",
-        "7.11",
         "Adaptive impedance lets the gripper track the generalised trajectory (to 0.05 mm, without chatter).",
         tracks("muscle"),
         control=tracks("constant_mean"),
         credits="the adaptive impedance",
         printed=PRINTED_LAW,
-        where="7.4.3",
         note="Exact sensing: {impedance_tracking.muscle.rms_error:.2g} mm, and "
         "{impedance_tracking.constant_mean.rms_error:.2g} mm with a constant K of the same mean. With encoders see "
         "C7.27c.",
     ),
-    Claim(
+    ours_7_11(
         "C7.27c",
-        "7.11",
         "With the encoders of a desktop device it does so without chatter, too.",
         tracks("encoders"),
-        source="ours",
         note="{impedance_tracking.encoders.rms_error:.2g} mm at a torque travel of "
         "{impedance_tracking.encoders.torque_travel:.0f} N m a joint; integral action in place of the estimation "
         "{impedance_tracking.encoders_integral.rms_error:.2g} mm at "
@@ -62,12 +58,10 @@ CLAIMS = (
         "{impedance_tracking.encoders_no_estimation.rms_error:.2g} mm at "
         "{impedance_tracking.encoders_no_estimation.torque_travel:.0f}.",
     ),
-    Claim(
+    ours_7_11(
         "C7.27b",
-        "7.11",
         "With encoders the delayed torque must pass the velocity's filter.",
         less(f"{TRACKING}.encoders.rms_error", f"{TRACKING}.encoders_unmatched.rms_error", 0.1),
-        source="ours",
     ),
     Claim(
         "C7.29",
@@ -82,26 +76,21 @@ CLAIMS = (
         "constant K of Gamma eps over the layer gives {impedance_tracking.jumps_constant.rms_error:.3g} mm, (7.40) "
         "{impedance_tracking.jumps_robust.rms_error:.3g} mm. As printed it chatters.",
     ),
-    Claim(
+    ours_7_11(
         "C7.32",
-        "7.11",
         "Muscle-like impedance tracks better than its mean as a constant.",
         less(f"{TRACKING}.muscle.rms_error", f"{TRACKING}.constant_mean.rms_error"),
-        source="ours",
         note="{impedance_tracking.muscle.rms_error:.2g} and {impedance_tracking.constant_mean.rms_error:.2g} mm; the "
         "text claims stability and tracking only.",
     ),
-    Claim(
+    ours_7_11(
         "C7.32e",
-        "7.11",
         "Tuned alike, muscle-like impedance tracks better than a constant one.",
         less(f"{TRACKING}.tuned_muscle.rms_error", f"{TRACKING}.tuned_constant.rms_error"),
-        source="ours",
         note="Twelve pairs of gains each.",
     ),
-    Claim(
+    fig_7_11(
         "C7.33",
-        "7.11",
         "Time-delay estimation absorbs unmodelled dynamics (error below a tenth, also with encoders).",
         absorbs("muscle", "encoders"),
         control=absorbs("integral", "encoders_integral"),
@@ -114,12 +103,10 @@ CLAIMS = (
         "{impedance_tracking.encoders_no_estimation.rms_error:.3g}, {impedance_tracking.encoders.rms_error:.2g} and "
         "{impedance_tracking.encoders_integral.rms_error:.2g} mm.",
     ),
-    Claim(
+    ours_7_11(
         "C7.33b",
-        "7.11",
         "It does so against tuned gains without it, too.",
         less(f"{TRACKING}.tuned_muscle.rms_error", f"{TRACKING}.tuned_no_estimation.rms_error", 0.01),
-        source="ours",
         note="So does integral action: {impedance_tracking.tuned_no_estimation.rms_error:.3g} mm become "
         "{impedance_tracking.tuned_integral.rms_error:.2g} mm.",
     ),

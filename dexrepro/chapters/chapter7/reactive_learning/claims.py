@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less, ordered
+from dexrepro.claims import Claim, Predicate, about, every, greater, less, ordered
 
 LEARNING = "reactive_learning"
 
@@ -21,15 +21,14 @@ def to_the_floor(case: str) -> Predicate:
     )
 
 
+fig_7_8 = about("7.8", "7.4.1")
 CLAIMS = (
-    Claim(
+    fig_7_8(
         "C7.10",
-        "7.8",
         "With 1, 2 and 5 groups of enhancement nodes the reactions are approached gradually.",
         gradual("frozen"),
         printed=gradual("printed_sign"),
         no_control="without further nodes nothing changes from one stage to the next",
-        where="7.4.1",
         note="The old nodes keep their weights, as (7.17) and (7.18) say.",
     ),
     Claim(
@@ -40,23 +39,19 @@ CLAIMS = (
         source="ours",
         note="The old kernels alone already fit the reactions to {reactive_learning.refit.plain_refit:.1g} cm.",
     ),
-    Claim(
+    fig_7_8(
         "C7.11",
-        "7.8",
         "The final reactions represent the classes with minor errors.",
         less(f"{LEARNING}.frozen.shown_rmse", f"{LEARNING}.frozen.spread"),
         control=less(f"{LEARNING}.frozen.plain_refit", f"{LEARNING}.frozen.spread"),
         credits="the enhancement nodes",
         printed=less(f"{LEARNING}.printed_sign.shown_rmse", f"{LEARNING}.printed_sign.spread"),
-        where="7.4.1",
         note="The eight kernels of the primitive alone, fitted again, err by "
         "{reactive_learning.frozen.plain_refit:.2g} cm, with five groups of enhancement nodes "
-        "{reactive_learning.frozen.shown_rmse:.2g} cm; repetitions spread by {reactive_learning.frozen.spread:.2g} "
-        "cm.",
+        "{reactive_learning.frozen.shown_rmse:.2g} cm; repetitions spread by {reactive_learning.frozen.spread:.2g} cm.",
     ),
-    Claim(
+    fig_7_8(
         "C7.12",
-        "7.8",
         "More enhancement nodes approach any trajectory.",
         to_the_floor("frozen"),
         control=less(f"{LEARNING}.frozen.plain_refit", 0.015),
@@ -65,9 +60,8 @@ CLAIMS = (
         note="Down to a floor of {reactive_learning.frozen.rmse8:.1g} cm, which the smoothing of the demonstrations "
         "sets. The bound is for the sensor noise chosen; with more of it the floor is higher.",
     ),
-    Claim(
+    fig_7_8(
         "C7.13",
-        "7.8",
         "Reactions keep start and end (to 1 mm).",
         less(f"{LEARNING}.frozen.end_error5", 0.1),
         printed=less(f"{LEARNING}.printed_sign.end_error5", 0.1),
@@ -81,17 +75,15 @@ CLAIMS = (
         note="The final skill does; half-learned forcing terms do not fade in time: with one group of nodes the "
         "movement ends {reactive_learning.frozen.end_error1:.2g} cm off.",
     ),
-    Claim(
+    fig_7_8(
         "C7.14",
-        "7.8",
         "The ordinary skill is preserved beside the reactions.",
         less(f"{LEARNING}.frozen.ordinary_change", 1e-9),
         by_construction="ordinary and reactive forcing terms are stored apart",
         where="7.4.3",
     ),
-    Claim(
+    fig_7_8(
         "C7.34",
-        "7.8",
         "The method realises life-long learning: what was learned stays.",
         less(f"{LEARNING}.frozen.ordinary_change", 1e-9),
         by_construction="every condition has weights of its own, which nothing learned later touches",

@@ -2,35 +2,30 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, every, less
+from dexrepro.claims import Claim, about, every, less
 
 UNSEEN = "unseen_conditions"
 
+ours_7_c = about("7.C", source="ours")
 CLAIMS = (
-    Claim(
+    ours_7_c(
         "C7.23",
-        "7.C",
         "Leaving one condition out, fuzzy rules are closer than the nearest demonstration, on average.",
         less(f"{UNSEEN}.main.left_out_fuzzy", f"{UNSEEN}.main.left_out_nearest"),
-        source="ours",
         note="On the mean: they win {unseen_conditions.main.left_out_wins:.0f} of twelve conditions.",
     ),
-    Claim(
+    ours_7_c(
         "C7.24",
-        "7.C",
         "In unseen conditions fuzzy rules are closer than the nearest demonstration and touch less.",
         every(
             less(f"{UNSEEN}.main.unseen_fuzzy", f"{UNSEEN}.main.unseen_nearest"),
             less(f"{UNSEEN}.main.touches_fuzzy", f"{UNSEEN}.main.touches_nearest"),
         ),
-        source="ours",
     ),
-    Claim(
+    ours_7_c(
         "C7.24b",
-        "7.C",
         "In unseen conditions fuzzy rules are closer than a plane a direction.",
         less(f"{UNSEEN}.main.unseen_fuzzy", f"{UNSEEN}.main.unseen_plane"),
-        source="ours",
         note="The synthetic person reacts linearly to the height, which favours the plane; it touches the obstacle "
         "in {unseen_conditions.main.touches_plane:.0%} of the conditions (fuzzy rules "
         "{unseen_conditions.main.touches_fuzzy:.0%}) and errs by {unseen_conditions.main.left_out_plane:.2f} cm when a "
@@ -45,12 +40,10 @@ CLAIMS = (
         by_construction="with sets narrow enough one rule alone speaks at its centre",
         note="At the rules' own conditions only; what it does between them, C7.24 and C7.24b tell.",
     ),
-    Claim(
+    ours_7_c(
         "C7.25b",
-        "7.C",
         "It does so with the widths used here.",
         less(f"{UNSEEN}.main.rule_worst", 0.1),
-        source="ours",
         note="Our widths interpolate best and leak between forward and right; no width is printed.",
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, Reference, every, greater, less, within
+from dexrepro.claims import Claim, Predicate, Reference, about, every, greater, less, within
 
 SPONGE = "sponge"
 
@@ -13,28 +13,25 @@ def optimal(case: str) -> Predicate:
     return every(greater(gain, best, 1.01), less(gain, best, 0.99))
 
 
+fig_8_13 = about("8.13", "8.5")
 CLAIMS = (
-    Claim(
+    fig_8_13(
         "C8.16",
-        "8.13",
         "On the Baxter arm the error stays inside 0.1 m.",
         every(less(f"{SPONGE}.learned.bound_used", 1.0), less(f"{SPONGE}.lqr.bound_used", 1.0)),
         control=less(f"{SPONGE}.lqr_printed.bound_used", 1.0),
         printed=less(f"{SPONGE}.at_50_hz.bound_used", 1.0),
-        where="8.5",
         note="At the printed 50 Hz a bound is violated after {sponge.at_50_hz.stopped_at:.2f} s on our model, which "
         "has no inner joint loops (E8.17). At 1 kHz with the arm's own gravity compensation, and with its exact "
         "inertia in what holds the redundant joints (the law itself has no model); simulated sponge.",
     ),
-    Claim(
+    fig_8_13(
         "C8.17",
-        "8.13",
         "The learned law compresses the sponge less than the regulator.",
         less(f"{SPONGE}.learned.final_compression", f"{SPONGE}.lqr.final_compression"),
         control=less(f"{SPONGE}.lqr_true.final_compression", f"{SPONGE}.lqr.final_compression"),
         credits="the adaptive impedance",
         printed=less(f"{SPONGE}.learned.final_compression", f"{SPONGE}.lqr_printed_environment.final_compression"),
-        where="8.5",
         note="At equal knowledge it is a tie: {sponge.learned.final_compression:.2f} mm learned, "
         "{sponge.lqr_true.final_compression:.2f} mm for a regulator told the sponge of 400 N/m, "
         "{sponge.lqr.final_compression:.2f} mm for one told 7 N/m. Below {sponge.crossing_stiffness:.0f} N/m, which "
@@ -56,9 +53,8 @@ CLAIMS = (
         less(f"{SPONGE}.soft_learned.final_compression", f"{SPONGE}.soft_lqr.final_compression"),
         source="ours",
     ),
-    Claim(
+    fig_8_13(
         "C8.18",
-        "8.13",
         "The numbers of nodes grow and remain stable.",
         every(
             less(f"{SPONGE}.learned.late_growth", 0.5),
@@ -70,18 +66,15 @@ CLAIMS = (
                 *(greater(f"{SPONGE}.learned.joint_nodes_{name}", 1.5) for name in "dc")
             )
         },
-        where="8.5",
         note="With task-space inputs there are {sponge.learned.nodes_d:.0f}, {sponge.learned.nodes_c:.0f} and "
         "{sponge.learned.nodes_g:.0f} nodes at the end: that of C is the first and only one.",
     ),
-    Claim(
+    fig_8_13(
         "C8.18b",
-        "8.13",
         "They remain stable at 14, 35 and 38.",
         every(*(within(f"{SPONGE}.learned.nodes_{name}", n - 0.5, n + 0.5) for name, n in zip("dcg", (14, 35, 38)))),
         no_control="D and G have one threshold and, as printed, one input: their counts are equal whatever is run",
         searched="task-space inputs, and joint angles and rates as inputs, with the printed thresholds",
-        where="8.5",
         note="Task-space inputs make {sponge.learned.nodes_d:.0f}, {sponge.learned.nodes_c:.0f} and "
         "{sponge.learned.nodes_g:.0f}, joint inputs {sponge.learned.joint_nodes_d:.0f} for D and G and "
         "{sponge.learned.joint_nodes_c:.0f} for C. The inputs of the networks, m and beta_1 are not printed (E8.16).",

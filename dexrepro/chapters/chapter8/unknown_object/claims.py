@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, every, greater, less
+from dexrepro.claims import Claim, Predicate, about, every, greater, less
 
 OBJECT = "unknown_object"
 EXPLORATION = 8 * 0.05  # N/s; the fastest that the exploration, sum of v_m/k sin(kt), moves the force
@@ -16,21 +16,21 @@ def calmer(case: str, rival: str) -> Predicate:
     )
 
 
+fig_8_10 = about("8.10", "8.4.3")
+ours_8_10 = about("8.10", source="ours")
+fig_8_11 = about("8.11", "8.4.3")
 CLAIMS = (
-    Claim(
+    fig_8_10(
         "C8.09",
-        "8.10",
         "The soft change of gain removes the discontinuity at the switch.",
         less(f"{OBJECT}.soft.force_rate", EXPLORATION),
         control=less(f"{OBJECT}.abrupt.force_rate", EXPLORATION),
         credits=SOFT,
-        where="8.4.3",
         note="The measured force changes at {unknown_object.soft.force_rate:.2f} N/s at most, slower than the "
         "exploration moves it; with the abrupt change at {unknown_object.abrupt.force_rate:.2f} N/s.",
     ),
-    Claim(
+    fig_8_10(
         "C8.10",
-        "8.10",
         "The soft change of gain does not oscillate (by 1 mm of way), the abrupt one does.",
         less(f"{OBJECT}.static_soft.oscillation", 1.0),
         control=less(f"{OBJECT}.static_abrupt.oscillation", 1.0),
@@ -40,15 +40,13 @@ CLAIMS = (
                 f"{OBJECT}.soft.oscillation", f"{OBJECT}.abrupt.oscillation"
             )
         },
-        where="8.4.3",
         note="How x_0 follows from the law is not printed. Taken from the interaction law itself behind two lags the "
         "indentation swings by {unknown_object.static_abrupt.oscillation:.0f} mm of way after the abrupt change and by "
         "{unknown_object.static_soft.oscillation:.2g} mm after the soft one; with our integrating reference neither "
         "swings ({unknown_object.abrupt.oscillation:.2g} mm abrupt).",
     ),
-    Claim(
+    fig_8_10(
         "C8.11",
-        "8.10",
         "It is less oscillatory than the linear-quadratic regulator: oscillation and force rate at the change are "
         "lower.",
         calmer("static_soft", "static_lqr_switched"),
@@ -58,7 +56,6 @@ CLAIMS = (
             "a reference that integrates the force error": calmer("soft", "lqr_switched"),
         },
         searched="the regulator from K_0, as Fig. 8.11 shows it, with both references",
-        where="8.4.3",
         note="Both laws start from the same K_0, as the book says and its Fig. 8.11 shows: force rate "
         "{unknown_object.static_soft.force_rate:.2f} against {unknown_object.static_lqr_switched.force_rate:.2f} N/s, "
         "oscillation {unknown_object.static_soft.oscillation:.2g} against "
@@ -66,28 +63,23 @@ CLAIMS = (
         "(rate {unknown_object.soft.force_rate:.2f} against {unknown_object.lqr_switched.force_rate:.2f} N/s); a "
         "regulator that is constant from the first contact, which Fig. 8.11 contradicts, has nothing to change.",
     ),
-    Claim(
+    fig_8_10(
         "C8.12",
-        "8.10",
         "The error stays inside its bounds during the interaction.",
         every(*(less(f"{OBJECT}.{case}.bound_used", 1.0) for case in ("soft", "abrupt", "lqr"))),
         control=less(f"{OBJECT}.no_barrier.bound_used", 1.0),
         printed=less(f"{OBJECT}.plus.bound_used", 1.0),
-        where="8.4.3",
         note="It uses {unknown_object.soft.bound_used:.1%} of the bound, and without a barrier "
         "{unknown_object.no_barrier.bound_used:.1%}: the barrier is not put to the test here. With tau_e = +K zeta, as "
         "Algorithm 8.1 prints, a bound is violated.",
     ),
-    Claim(
+    ours_8_10(
         "C8.12s",
-        "8.10",
         "The abrupt change keeps the bounds also with a fast reference taken from the interaction law (20 1/s).",
         less(f"{OBJECT}.static_abrupt_fast.bound_used", 1.0),
-        source="ours",
     ),
-    Claim(
+    fig_8_11(
         "C8.13",
-        "8.11",
         "The learned gain is the optimal one, without a model of the object.",
         every(
             less(f"{OBJECT}.soft.gain_error_x", 0.01),
@@ -96,7 +88,6 @@ CLAIMS = (
         ),
         control=less(f"{OBJECT}.lqr.fraction_theory", f"{OBJECT}.lqr_true.fraction_theory", 1.01),
         printed=less(f"{OBJECT}.soft.desired_path_error", 0.01),
-        where="8.4.3",
         note="Optimal for the printed cost with M = -1, which is not the circle's. It is off by "
         "{unknown_object.soft.gain_error_x:.1g}, for the half step by which velocities of the physics engine lag. The "
         "regressor s must obey (8.8); the desired path x_d/N does not (E8.09).",
@@ -108,34 +99,28 @@ CLAIMS = (
         less(f"{OBJECT}.worst_gain_error", 0.01),
         source="ours",
     ),
-    Claim(
+    fig_8_11(
         "C8.14",
-        "8.11",
         "The interaction is as favourable as the regulator's: the cost of the final law is not higher.",
         less(f"{OBJECT}.soft.final_cost", f"{OBJECT}.lqr.final_cost"),
         by_construction="it follows from C8.13: no gain has a lower cost than the optimal one",
-        where="8.4.3",
         note="At rest, computed from the gain and the object's stiffness; over the contact see C8.14w. The printed "
         "model of the regulator is wrong by a factor of ten in stiffness: told the true one, its cost is "
         "{unknown_object.lqr_true.final_cost:.2f}, the learned gain's {unknown_object.soft.final_cost:.2f}, and the "
         "wrong model's {unknown_object.lqr.final_cost:.2f}.",
     ),
-    Claim(
+    ours_8_10(
         "C8.14w",
-        "8.10",
         "The cost of the whole contact, learning included, is not higher than the regulator's.",
         less(f"{OBJECT}.soft.contact_cost", f"{OBJECT}.lqr.contact_cost"),
-        source="ours",
         note="{unknown_object.soft.contact_cost:.3g} against {unknown_object.lqr.contact_cost:.3g}: the soft change "
         "keeps the bad initial gain longest.",
     ),
-    Claim(
+    fig_8_11(
         "C8.15",
-        "8.11",
         "No knowledge of the environment is needed: the gain is learned with the surface found by touch.",
         every(less(f"{OBJECT}.soft.surface_error", 0.1), less(f"{OBJECT}.soft.gain_error_x", 0.01)),
         control=less(f"{OBJECT}.absolute.gain_error_x", 0.01),
-        where="8.4.3",
         note="The surface position is needed and comes from the first contact force [mm]; with 5 mm of error K_x is "
         "{unknown_object.soft.surface_low_gain_x:.3f} or {unknown_object.soft.surface_high_gain_x:.3f} N/m in place of "
         "{unknown_object.soft.gain_x:.3f}.",
