@@ -20,7 +20,7 @@ import time
 import zlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import chdir, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -174,7 +174,9 @@ def evaluate(
             continue
         start = time.perf_counter()
         try:
-            found: dict[str, Any] = {"metrics": _rounded(finite(run_case(definition, live(config), seed)[1]))}
+            with chdir("."):  # a law may go elsewhere
+                metrics = run_case(definition, live(config), seed)[1]
+            found: dict[str, Any] = {"metrics": _rounded(finite(metrics))}
         except Exception as problem:
             found = {"error": f"{type(problem).__name__}: {' '.join(str(problem).split())}"}
         cases[case] = {"content": content, **found, "seconds": round(time.perf_counter() - start, 3)}
