@@ -77,12 +77,11 @@ def _draw_cost(cost: pd.DataFrame, drift: pd.DataFrame) -> Drawing:
         right.plot(part.m, part.gap, label=f"{count} kernels", marker="o", ms=3, **style.LINES[line])
     right.set(yscale="log", xlabel="Added features m [-]", ylabel="Update minus anew,\nshare of the target [-]")
     right.legend()
-    ratio = (cost.anew / cost["update"]).iloc[-1]
+    ratio = style.at_least((cost.anew / cost["update"]).iloc[-1], 0)
     lost = " and ".join(str(count) for count, part in drift.groupby("kernels") if part.gap.iloc[-1] > LOST)
     return style.title(
         figure,
-        f"The update costs up to {ratio:.0f} times less"
-        + (f"; with {lost} kernels it loses the solution" if lost else ""),
+        f"The update costs up to {ratio} times less" + (f"; with {lost} kernels it loses the solution" if lost else ""),
     )
 
 
