@@ -20,13 +20,13 @@ from rich.console import Console
 from rich.table import Table
 
 from dexrepro import __version__
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, folder_named
 
 if TYPE_CHECKING:
     from dexrepro.baselines import ChapterReport
 
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--info", "-i", "--hydra-help", "--resolve")
-SHOWN = 6  # names in one line of the check
+SHOWN = 8  # names in one line
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
 STATUSES = {
     OK: "done; check: the same as stored",
@@ -243,10 +243,10 @@ def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
         if argument in ("--config-dir", "-cd"):
             if index + 1 == len(arguments):
                 raise InputError("--config-dir needs a folder")
-            extra_dir = os.path.expanduser(arguments[index + 1])
+            extra_dir = str(folder_named(arguments[index + 1], argument))
             del rest[index : index + 2]
         elif argument.startswith("--config-dir="):
-            extra_dir = os.path.expanduser(argument.partition("=")[2])
+            extra_dir = str(folder_named(argument.partition("=")[2], "--config-dir"))
             rest.remove(argument)
     if extra_dir is not None:
         _make_importable(extra_dir)
@@ -270,10 +270,19 @@ def run_overrides(overrides: Sequence[str], extra_dir: str | None = None) -> int
 
 
 def _sentences(outcome: Any) -> list[str]:
-    return [
-        f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''} failed: {reason}"
-        for reason, names in outcome.reasons().items()
-    ]
+    """What failed, and under which values that are not the book's, which may be the reason."""
+    said = []
+    for reason, names in outcome.reasons().items():
+        experiment = names[0].partition(".")[0]
+        under = _differs(experiment, outcome.differs.get(experiment, []))
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        said.append("; ".join([f"{names[0]}{more} failed: {reason}", *under]))
+    return said
+
+
+def _differs(name: str, differs: Sequence[str]) -> list[str]:
+    named = ", ".join(differs[:SHOWN]) + (f" and {len(differs) - SHOWN} more" if len(differs) > SHOWN else "")
+    return [f"{name} differs from the book in: {named}"] if differs else []
 
 
 def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
@@ -359,9 +368,8 @@ def _print_summary(outcome: Any) -> None:
     for name, reason in outcome.skipped.items():
         out.print(f"{name} skipped: {reason}", markup=False)
     for name, differs in outcome.differs.items():
-        if differs and name in outcome.folders:
-            named = ", ".join(differs[:8]) + (f" and {len(differs) - 8} more" if len(differs) > 8 else "")
-            out.print(f"{name} differs from the book in: {named}", markup=False)
+        for line in _differs(name, differs) if name in outcome.folders else ():
+            out.print(line, markup=False)
     for line in _claims_to_name(outcome):
         out.print(line, markup=False)
     if not evaluated:
@@ -737,7 +745,7 @@ def compare_command(options: argparse.Namespace) -> int:
     known, rest = _search_words(options.selection, "compare", "laws")
     if rest:
         raise InputError(f"'{rest[0]}' has no meaning here; see: dexrepro compare --help")
-    laws = tune.laws_in(Path(known["laws"]).expanduser())
+    laws = tune.laws_in(folder_named(known["laws"], "laws"))
     results, names = known["results"], known["case"].split(",")
     rows = tune.leaderboard(
         names, laws, known["metric"].split(","), known["sign"],
@@ -776,7 +784,7 @@ def _search_words(words: Sequence[str], command: str, *needed: str) -> tuple[dic
     workers = known.get("workers")
     known |= {
         "metric": known[goals[0]], "sign": 1 if goals[0] == "minimise" else -1, "budget": int(budget),
-        "results": Path(known.get("results", "results")).expanduser(),
+        "results": folder_named(known.get("results", "results")),
         "workers": positive_workers(int(workers) if workers and workers.isdigit() else workers),
     }  # fmt: skip
     return known, [word for word in words if word.partition("=")[0] not in own]
