@@ -15,7 +15,7 @@ from PIL import Image
 from dexrepro import chapters
 from dexrepro.checks import leaves
 from dexrepro.claims import Claim, Erratum, filled
-from dexrepro.config import compose_chapter, experiment_cases, resolved_block
+from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
 from dexrepro.experiment import Experiment
 from dexrepro.plan import lacking, outdated, plan_chapter
 from dexrepro.provenance import provenance
@@ -39,6 +39,7 @@ class Contents:
         self.chapter = chapters.load(number)
         self.composed, self.origins = compose_chapter(number), provenance(number)
         self.metrics: dict[str, Any] = {}
+        self.settings: dict[str, Any] = {}
         self.experiments: list[dict[str, Any]] = []
         made = [experiment for experiment in self.chapter.experiments if experiment.name in places]
         self.absent = [
@@ -47,6 +48,7 @@ class Contents:
         for experiment in made:
             check_result(places[experiment.name], "metrics.json", "claims.json", "config.yaml")
             self.metrics |= read_json(places[experiment.name] / "metrics.json")
+            self.settings |= settings(self.composed, experiment.name)
         as_shipped = [experiment.name for experiment in made if places[experiment.name].name == experiment.name]
         plans = plan_chapter(number, write=False)[0] if as_shipped else []
         self.plans = {plan.experiment: plan for plan in plans if plan.experiment in as_shipped}
@@ -176,9 +178,10 @@ class Contents:
 
     def _erratum(self, item: Erratum) -> dict[str, Any]:
         evidence = [(name, self.metrics.get(name)) for name in item.evidence]
+        numbers = {**self.settings, **self.metrics}
         return {
             **vars(item), "evidence": evidence,
-            "summary": filled(item.summary, self.metrics), "correction": filled(item.correction, self.metrics),
+            "summary": filled(item.summary, numbers), "correction": filled(item.correction, numbers),
             "equations": equations.numbers(item.equation),
             "line": self._line(item.id), "chapter": self.number,
         }  # fmt: skip

@@ -31,6 +31,7 @@ NAMES = {
     "force": "F",
     "force_integral": "F (integral)",
     "passive_impedance": "PIm",
+    "passive_told": "PIm, told as much as NoIm",
     "no_impedance": "NoIm",
     "impedance": "Im",
 }
