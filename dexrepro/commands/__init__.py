@@ -25,7 +25,7 @@ err = Console(stderr=True, highlight=False, soft_wrap=True)
 
 def say(text: object) -> None:
     """A line of output as it is, brackets and all."""
-    say(text)
+    out.print(str(text), markup=False)
 
 
 def warn(text: object) -> None:

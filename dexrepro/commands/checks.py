@@ -43,7 +43,7 @@ def check_command(options: argparse.Namespace) -> int:
         else:
             reports = [baselines.check_chapter(number, existing(results), only) for number in numbers]
     except baselines.ResultsMissing as missing:
-        warn(str(missing))
+        warn(missing)
         return WRONG
     ok = all(report.ok for report in reports)
     if options.json:
@@ -92,11 +92,10 @@ def crosscheck_command(options: argparse.Namespace) -> int:
             crosscheck.keep([item], target)
             known = [entry for entry in item.metrics if entry.spread]
             turned = [f"{key} {' under PyBullet, '.join(item.claims[key])} under MuJoCo" for key in item.turned]
-            out.print(
+            say(
                 f"{item.experiment}: {item.compared} numbers, {len(item.metrics)} outside their tolerance, "
                 f"{sum(entry.matters for entry in known)} of the {len(known)} that a study has outside its range, too; "
-                f"{len(item.claims)} claims, {len(turned)} turn" + "".join(f"\n  {text}" for text in turned),
-                markup=False,
+                f"{len(item.claims)} claims, {len(turned)} turn" + "".join(f"\n  {text}" for text in turned)
             )
     say(target)
     return OK
@@ -134,7 +133,7 @@ def study_command(options: argparse.Namespace) -> int:
                 path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update,
                                  engine=engine, only=cases)  # fmt: skip
             except study.SamplesFailed as error:
-                warn(str(error))
+                warn(error)
                 return FAILED
             _print_study(name, path, results)
     return OK
@@ -147,7 +146,6 @@ def _samples(text: str | None) -> int | None:
 
 
 def _hours(text: str | None) -> float | None:
-
     with suppress(ValueError):
         if text is None or (math.isfinite(float(text)) and float(text) > 0):
             return float(text) if text else None
@@ -197,6 +195,4 @@ def _print_study(name: str, path: Path, results: Path) -> None:
     for claim, row in summary["claims"].items():
         interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
         most = f", follows {row['parameter']} most" if row["parameter"] else ""
-        out.print(
-            f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}), {row['word']}{most}", markup=False
-        )
+        say(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}), {row['word']}{most}")

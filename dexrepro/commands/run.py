@@ -1,4 +1,4 @@
-"""``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
+"""``dexrepro run``, and jobs by a launcher of Hydra's."""
 
 from __future__ import annotations
 
@@ -139,12 +139,8 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     quiet = bool(settings.get("quiet"))
     progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
     with progress if isinstance(progress, Bar) else nullcontext():
-        outcome: Outcome = run_plans(
-            plans,
-            workers=positive_workers(settings.get("workers")),
-            force=bool(settings.get("force")),
-            progress=progress,
-        )
+        workers, force = positive_workers(settings.get("workers")), bool(settings.get("force"))
+        outcome: Outcome = run_plans(plans, workers=workers, force=force, progress=progress)
     outcome.skipped = skipped
     if not quiet:
         _print_summary(outcome)
