@@ -18,8 +18,9 @@ FIGURES = {
         "As DFR comes closer the minimum of the potential moves from beside the object into it.",
     ),
     "1.12": Figure(
-        "Simulated. The camera's object: four edge points, their noisy average at 15 Hz, off-centre, over two seconds.",
-        "The measured position scatters about a point 18 mm from the true centre.",
+        "Simulated. The camera's object: four edge points, their noisy average at {ready_to_hold.camera.rate:g} Hz, "
+        "off-centre, over two seconds.",
+        "The measured position scatters about a point beside the true centre.",
     ),
     "1.16": Figure(
         "Simulated Baxter. Top: pictures at the book's instants. Then: AFR, DFR and object along the holding line, "

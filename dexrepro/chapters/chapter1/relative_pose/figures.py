@@ -11,10 +11,11 @@ from dexrepro.report import style
 
 FIGURES = {
     "1.5": Figure(
-        "A hand moves 60 mm in a minimum-jerk movement of three durations; tool displacement with s(v) applied to each "
-        "sample's step and to the total displacement since the fixing (Eq. (1.11) to the letter). The book shows the "
-        "frames of the transformation.",
-        "With speed-dependent scaling the total form pulls the tool back to 60 mm, the incremental form keeps it.",
+        "A hand moves {relative_pose.move:g} m in a minimum-jerk movement of three durations; tool displacement with "
+        "s(v) applied to each sample's step and to the total displacement since the fixing (Eq. (1.11) to the "
+        "letter). The book shows the frames of the transformation.",
+        "With speed-dependent scaling the total form pulls the tool back to where the hand is, the incremental form "
+        "keeps it.",
     ),
     "1.6": Figure(
         "Tool frames of DFR and AFR for three orientations of DFR, by Eq. (1.14); z axes thick. The book shows one.",

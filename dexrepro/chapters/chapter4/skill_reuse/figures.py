@@ -15,7 +15,7 @@ from dexrepro.chapters.chapter4.two_link import ELLIPSE
 from dexrepro.experiment import Config, Drawing, Drawings, Figure, Metrics, Recording
 from dexrepro.report import style
 
-ARM = "Two-link arm in PyBullet under the law's torque, gravity and 2 N at the tip. "
+ARM = "Two-link arm in PyBullet under the law's torque, gravity and {skill_reuse.task.force.1:g} N at the tip. "
 WEIGHTS = (
     ARM + "Weights of the Gaussians, one line a node, while the four strokes are learned one after another; above each "
     "panel how many exceed a tenth of the largest (joint 1). The book shows many small and few large weights."
@@ -194,7 +194,13 @@ def arm(recording: Recording, config: Config) -> Drawing:
     axes.plot(2 * np.cos(reach), 2 * np.sin(reach), color=style.PLAIN, linewidth=0.8)
     axes.annotate("reach", (1.9, -0.62), size=7, color=style.PLAIN, ha="right")
     axes.annotate("$g$", xy=(1.4, -0.85), xytext=(1.4, -0.55), ha="center", arrowprops={"arrowstyle": "->", "lw": 0.8})
-    axes.annotate("2 N", xy=(1.0, 0.55), xytext=(1.0, 0.25), ha="center", arrowprops={"arrowstyle": "->", "lw": 0.8})
+    axes.annotate(
+        f"{config.task.force[1]:g} N",
+        xy=(1.0, 0.55),
+        xytext=(1.0, 0.25),
+        ha="center",
+        arrowprops={"arrowstyle": "->", "lw": 0.8},
+    )
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=(0, 2), ylim=(-1, 1))
     return style.title(figure, "Every run starts at rest at the centre")
 

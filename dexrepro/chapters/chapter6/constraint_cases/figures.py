@@ -10,6 +10,7 @@ from dexrepro.report import style
 
 from .experiment import constraint_of
 
+CLOSE = 0.4  # s, shown in panel d
 FIGURES = {
     "6.A": Figure(
         "(a, b) V^c relative to its start and (c) the scaled error of the error dynamics under the consistent law for "
@@ -63,7 +64,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     inner.set(ylabel="$V^c(t)/V^c(0)$ [-]", yscale="log", ylim=(1e-6, 3), xlim=(-0.05, 1))
     outer.set(ylabel="$V^c(t)/V^c(0)$ [-]")
     right.set(ylabel="$|z_1|/H$ [-]", ylim=(0, None))
-    close.set(ylabel="$|z_1|/H$ [-]", xlim=(0, 0.4), ylim=(0.99, 1.04))
+    close.set(ylabel="$|z_1|/H$ [-]", xlim=(0, CLOSE), ylim=(0.99, 1.04))
     for axes in (right, close):
         axes.set_xlabel("Time [s]")
     parts = [axes.get_legend_handles_labels() for axes in (inner, outer, close)]
@@ -72,7 +73,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     style.panel(inner, "a", "V, inside")
     style.panel(outer, "b", "V, outside")
     style.panel(right, "c", "scaled error and bound")
-    style.panel(close, "d", "second asymmetric case, first 0.4 s")
+    style.panel(close, "d", f"second asymmetric case, first {CLOSE:g} s")
     hit = metrics.get("asymmetric_outside_printed", {}).get("hit_time")
     slow = f"outside V falls by {min(fallen):.1f} to {max(fallen):.1f} % in {config.duration:g} s" if fallen else ""
     late = f"; with (6.17) as printed the bound is hit after {hit:.2f} s" if hit else ""
