@@ -50,12 +50,10 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def draw_pictures(recording: Recording) -> Drawing:
-    images = style.trimmed(recording.images)
     words = {"a": "grasp", "f": "release"}
     figure, axes = style.subplots(2, 3, height=4.6)
-    for (letter, instant), panel in zip(PICTURES.items(), axes.flat):
-        style.photo(panel, images[letter])
-        style.panel(panel, letter, f"{words.get(letter, 'transport')}, {instant:g} s")
+    titles = {k: f"({k}) {words.get(k, 'transport')}, {instant:g} s" for k, instant in PICTURES.items()}
+    style.photos(axes.flat, recording.images, titles)
     return style.title(figure, "The arm carries the cube past the stack (simulated)")
 
 
