@@ -40,7 +40,7 @@ def templates() -> jinja2.Environment:
     """What the pages are made of."""
     loader = jinja2.PackageLoader("dexrepro.report", "templates")
     made = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    filters = (words.breakable, words.number, words.short_number, words.percent)
+    filters = (words.breakable, words.number, words.short_number, words.percent, words.prose)
     made.filters |= {function.__name__: function for function in filters}
     made.globals |= {"VERDICTS": verdicts.VERDICTS, "MARKS": verdicts.MARKS}
     return made

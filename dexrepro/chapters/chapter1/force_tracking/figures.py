@@ -29,7 +29,7 @@ FIGURES = {
 }
 UNITS = {
     "error": "N", "displacement": "m", "partner": "m", "reference": "m", "contact": "m", "stiffness": "N/m",
-    "joints": "rad", "tracking": "m", "lyapunov": "J", "weights": "m/s, 1/s, 1/s, 1/s",
+    "joints": "rad", "tracking": "m", "lyapunov": "1", "weights": "m/s, 1/s, 1/s, 1/s",
 }  # fmt: skip
 TABLES = {"T1.A": "Force error of every law in the three cases of Fig. 1.10"}
 ROLES = {"proposed": "book", "force": "rival", "passive": "plain"}

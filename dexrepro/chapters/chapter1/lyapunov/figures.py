@@ -13,7 +13,7 @@ FIGURES = {
         "V falls at every step only for the ideal law; for small L the force error grows.",
     )
 }
-UNITS = {"lyapunov": "J", "error": "N"}
+UNITS = {"lyapunov": "1", "error": "N"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
@@ -29,7 +29,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     for column, role in zip(frame.columns[1:], ("printed", "extra1", "rival", "extra3", "plain", "book")):
         right.semilogy(frame["time"], frame[column], label=f"L = {column}/s", **style.LINES[role])
     right.set(xlabel="Time [s]", ylabel="Force error, largest\nof 10 s [N]", ylim=(1e-3, 1e3))
-    right.legend(loc="upper right", ncols=3)
+    right.legend(loc="lower left", ncols=2)
     share = 100 * (metrics["built"]["rising"] or 0)
     style.title(
         figure,

@@ -109,8 +109,8 @@ def _draw_result(recordings: Recordings, metrics: AllMetrics, config: Config) ->
     bars.set_xticks(place, [BARS[case][0] for case in cases], fontsize=6.5)
     bars.set(ylabel="Force RMSE [N]", yscale="log", ylim=(0.01, 20))
     style.panel(bars, "d", "line (pale) and circle")
-    best = shown(metrics["proposed"]["rmse_circle"])
+    best = style.at_most(shown(metrics["proposed"]["rmse_circle"]), 2)
     return style.title(
         figure,
-        f"The proposed law holds {config.desired_force:g} N within {best:.2f} N rms on the circle (simulated Baxter)",
+        f"The proposed law holds {config.desired_force:g} N within {best} N rms on the circle (simulated Baxter)",
     )

@@ -84,7 +84,7 @@ def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
         style.panel(axes, letter, _off(config, case))
     grid[1, 1].legend(ncols=3, loc="center right")
     ends = np.ptp([run["follower.tip"][-1] for run in recordings.values()], axis=0)
-    spread = 1e3 * np.linalg.norm(ends)
+    spread = style.at_most(1e3 * float(np.linalg.norm(ends)), 1)
     return style.title(
-        figure, f"From both starts the follower ends at one place, within {spread:.1f} mm (simulated Baxter)"
+        figure, f"From both starts the follower ends at one place, within {spread} mm (simulated Baxter)"
     )

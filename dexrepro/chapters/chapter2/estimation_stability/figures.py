@@ -39,6 +39,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     right.set(xlabel="Time [s]", ylabel="$V(0) - V$ [$10^{-3}$]")
     right.legend()
     style.panels((left, right), "time from the start, equal rates", "constant parameters")
-    worst = 100 * max(metrics[case]["relative_difference"] or 0.0 for case in growing)
-    finding = f"Time from the start makes the law diverge within {worst:.0f} % of the predicted instant"
+    worst = style.at_most(100 * max(metrics[case]["relative_difference"] or 0.0 for case in growing), 0)
+    finding = f"Time from the start makes the law diverge within {worst} % of the predicted instant"
     return {"2.B": style.title(figure, finding)}

@@ -90,21 +90,19 @@ def _draw_reach(n: int, recordings: Recordings, metrics: Any, config: Config) ->
     for prefix, (label, line) in CURVES.items():
         recording = recordings.get(f"{prefix}{n}")
         if recording is not None:
-            left.plot(recording.time, np.maximum(recording["error"], 1e-6), label=label, **style.LINES[line])
+            left.plot(recording.time, 1e3 * np.maximum(recording["error"], 1e-6), label=label, **style.LINES[line])
             right.plot(recording.time, 1e3 * recording["rcm_distance"], label=label, **style.LINES[line])
     approach, insertion, _ = config.cases[f"reach{n}"].phases
     for axes in (left, right):
         for time, word in ((approach, "at $P_R$"), (approach + insertion, "at $X_D$")):
             style.event(axes, time, word)
         axes.set_xlabel("Time [s]")
-    left.set(yscale="log", ylabel=r"Distance to target $\|\tilde X\|$ [m]", ylim=(1e-6, 20))
+    left.set(yscale="log", ylabel=r"Distance to target $\|\tilde X\|$ [mm]", ylim=(1e-3, 2e4))
     right.set(yscale="log", ylabel="Distance to centre $Dis_R$ [mm]", ylim=(1e-3, 1e3))
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     found = metrics[f"reach{n}"]
-    final, far = 1e6 * found["final_position_error"], 1e3 * found["rcm_distance_max"]
-    return style.title(
-        figure, f"Reach {n} ends {final:.0f} µm from its target and stays within {far:.2f} mm of the centre"
-    )
+    final, far = 1e6 * found["final_position_error"], style.at_most(1e3 * found["rcm_distance_max"], 2)
+    return style.title(figure, f"Reach {n} ends {final:.0f} µm from its target and stays within {far} mm of the centre")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

@@ -288,10 +288,10 @@ def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
     top.set(ylabel="Nodes [-]", xlabel="Time of strokes and ellipse [s]", ylim=(0, 16), xlim=(0, time[-1]))
     top.legend(loc="upper left", bbox_to_anchor=(0.0, 0.9))
     bottom[0].set(ylabel="Nodes at first [-]", ylim=(0, 16), yticks=(0, 5, 10, 15))
-    last = max(number(metrics[case]["last_node_s"]) for case in shown)
+    last = style.at_most(max(number(metrics[case]["last_node_s"]) for case in shown), 2)
     counts = ", ".join(str(metrics[case]["nodes"]) for case in shown)
     return style.title(
-        figure, f"A smaller threshold gives more nodes ({counts}), the last at most {last:.2f} s into the ellipse"
+        figure, f"A smaller threshold gives more nodes ({counts}), the last at most {last} s into the ellipse"
     )
 
 
