@@ -120,7 +120,7 @@ def _draw_histories(recordings: Recordings, metrics: AllMetrics, config: Config)
     )
     return style.title(
         figure,
-        f"With (2.8) and movement estimation the force errs by {mean} % rms, {largest} % at most (from {SETTLED:g} s)",
+        f"With (2.8) and estimation the force errs by up to {mean} % rms, {largest} % at most (from {SETTLED:g} s)",
     )
 
 
