@@ -23,8 +23,7 @@ FIGURES = {
     "1.18": Figure(
         "Contact force on AFR along three synthetic trajectories, simulated Baxter arms under torque; the book shows "
         "measurements. Errors after the 8th second (right of the line) are in T1.B. Bottom: the start.",
-        "The proposed law keeps the contact force closest to {hold_and_move.desired_force:g} N on all three "
-        "trajectories.",
+        "Contact forces of three laws over time on three trajectories, with the start enlarged.",
     ),
     "1.19": Figure(
         "Simulated Baxter. Instants of the task in the first trajectory, proposed law: start, object on the left, "

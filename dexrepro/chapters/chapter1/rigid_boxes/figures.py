@@ -19,12 +19,12 @@ FIGURES = {
         "{rigid_boxes.cases.large.width:g} m, simulated Baxter arms, friction contact: pictures at holding, carrying "
         "and after the drop; contact force on AFR; height of the box. Lines: the start poses. The book shows "
         "photographs.",
-        "All three sizes are gripped, carried and dropped into the bin.",
+        "Pictures of boxes of three sizes at three instants, and contact force and height over time.",
     ),
     "1.B": Figure(
         "Contact force on AFR with a rigid box while it is gripped and lifted, for five gains of the force law; the "
         "gain printed for the soft object (0.25) is the last. The force then alternates with every control sample.",
-        "A small gain holds the rigid box quietly, with larger ones the force jumps from sample to sample.",
+        "Contact force over time for five gains of the force law.",
     ),
 }
 UNITS = {"force": "N", "height": "m", "phase": "1"}

@@ -19,7 +19,7 @@ FIGURES = {
         "gripper from two starts; (c), (d) contact force on it. Contact comes at y = "
         "{balloon_static.off_100.contact_y:.2f} and {balloon_static.off_80.contact_y:.2f} m (farther out in the book; "
         "it shifts with the balloon's size, which is not printed).",
-        "From both starts the follower reaches the same place and the force becomes 10 N along the holding line.",
+        "Paths of the follower's gripper from two starts, and the contact forces over time.",
     ),
 }
 UNITS = {"reference": "m"}

@@ -43,10 +43,10 @@ FIGURES = {
     "3.6": Figure(
         "Four instants of reach 1 (simulated): start, end point at the remote centre, half-way, at the target. The "
         "book shows photographs of the same steps.",
-        "The gripper descends to the opening and passes it to the cube inside the box.",
+        "Pictures of the arm at the opening and at the cube inside the box.",
     ),
     **{
-        f"3.{6 + n}": Figure(_REACH.format(n), f"Reach {n}: the end point arrives while the arm stays at the opening.")
+        f"3.{6 + n}": Figure(_REACH.format(n), f"Reach {n}: distances to the target and to the opening over time.")
         for n in (1, 2, 3, 4)
     },
 }

@@ -26,7 +26,7 @@ FIGURES = {
     "3.16": Figure(
         "Distance to the target and Dis_R while the opening moves (simulated; lid and box are collision bodies for the "
         "whole method). The law knows, without noise or delay, where the opening is, and not how fast it moves.",
-        "The arm follows the moving opening within a few millimetres.",
+        "Distance to the target and to the opening's centre over time while the opening moves.",
     ),
 }
 UNITS = {

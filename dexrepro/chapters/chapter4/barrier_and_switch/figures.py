@@ -18,7 +18,7 @@ FIGURES = {
         "omega; E must not exceed 1. Below: E and the largest input component while the two-link arm draws the ellipse "
         "from an empty network (threshold 20, a dot a recorded sample), and its error with and without the robust "
         "term. The book sketches the three regions.",
-        "The switch hands over to the robust term only in the transient, and stays below 1 with the square inside.",
+        "The switching function for two readings, and its value, inputs and errors over time.",
     )
 }
 UNITS = {
