@@ -65,40 +65,52 @@ def show_command(options: argparse.Namespace) -> int:
     return OK
 
 
-@command("draw again from files, nothing simulated", (*SELECTION, "case", "format", "style"))
+@command(
+    "draw again from files, nothing simulated: of a FOLDER such as one in results/runs, or as selected",
+    (*SELECTION, "case", "format", "style"), metavar="FOLDER|key=value",
+)  # fmt: skip
 def draw_command(options: argparse.Namespace) -> int:
-    """Draw figures and tables again from what is on disk."""
+    """``dexrepro draw [FOLDER ...] [key=value ...]``: figures and tables again from what is on disk."""
     from dexrepro.plan import plan_chapter, select
     from dexrepro.pool import sentence
     from dexrepro.report.damage import check_result
     from dexrepro.runner import redraw
     from dexrepro.selection import existing, quoted, selected
+    from dexrepro.storage import read_json
 
-    numbers, only, results, _, extra = selected(options.selection, "draw")
-    given, look, kind = dict(word.partition("=")[::2] for word in options.selection), extra.pop("style", None), None
+    folders, words = ([text for text in options.selection if ("=" in text) == keyed] for keyed in (False, True))
+    numbers, only, results, _, extra = selected(words, "draw")
+    given, look, kind = dict(word.partition("=")[::2] for word in words), extra.pop("style", None), None
     if look or "format" in extra:
         from dexrepro.report import export
 
         kind, look = export.checked(extra.pop("format", "pdf"), look or "paper")
-    found = [(n, e, existing(results) / f"chapter{n}" / e.name) for n in numbers for e in select(n, only or None, None)]
-    if extra:
-        words = [quoted(f"results={results}"), *(quoted(f"case={value}") for value in extra.values())]
-        words += [f"only=[{','.join(only)}]"] if only else []
-        plans = [plan for number in numbers for plan in plan_chapter(number, words, write=False)[0]]
-        folders = {plan.experiment: plan.folder for plan in plans}
-        found = [(n, e, folders[e.name]) for n, e, _ in found if e.name in folders]
-    found = [item for item in found if (item[2] / "run.json").exists()]
+    if folders:
+        if other := {"chapter", "only", *extra} & set(given):
+            raise InputError(f"{', '.join(sorted(other))}: a folder says which result; leave out one of the two")
+        found = [Path(folder) for folder in folders]
+    else:
+        parts = {n: select(n, only or None, None) for n in numbers}
+        found = [existing(results) / f"chapter{n}" / e.name for n, experiments in parts.items() for e in experiments]
+        if extra:
+            words = [quoted(f"results={results}"), *(quoted(f"case={value}") for value in extra.values())]
+            words += [f"only=[{','.join(only)}]"] if only else []
+            plans = [plan for number in numbers for plan in plan_chapter(number, words, write=False)[0]]
+            found = [plan.folder for plan in plans]
+        found = [folder for folder in found if (folder / "run.json").exists()]
     if not found:
         raise InputError(f"there is no such result in {results}; run first: dexrepro run {' '.join(options.selection)}")
-    for _, _, folder in found:
-        check_result(folder, "metrics.json", "config.yaml", series=True)
+    checked = [check_result(folder, "metrics.json", "config.yaml", series=True) for folder in found]
     status = OK
-    for number, experiment, folder in found:
+    for folder, experiment in zip(found, checked):
         try:
             if kind and look:
-                made = export.export(experiment, folder, results / "figures" / look, kind, look, given.get("figure"))
+                target = results / "figures" / look
+                if folder.name != experiment.name:  # of other parameters, or of some cases
+                    target /= folder.name
+                made = export.export(experiment, folder, target, kind, look, given.get("figure"))
             else:
-                redraw(number, experiment.name, folder)
+                redraw(read_json(folder / "run.json")["chapter"], experiment.name, folder)
                 made = [folder]
         except Exception as error:  # a result of another version, say; the others can still be drawn
             warn(f"{folder} cannot be drawn, run it again: {sentence(error)}")
