@@ -20,13 +20,13 @@ from rich.console import Console
 from rich.table import Table
 
 from dexrepro import __version__
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, folder_named
 
 if TYPE_CHECKING:
     from dexrepro.baselines import ChapterReport
 
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--info", "-i", "--hydra-help", "--resolve")
-SHOWN = 6  # names in one line of the check
+SHOWN = 8  # names in one line
 OK, FAILED, WRONG, INTERRUPTED = 0, 1, 2, 130
 STATUSES = {
     OK: "done; check: the same as stored",
@@ -166,7 +166,12 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument("--update", action="store_true", help="run, perturb, and store new baselines")
     check.add_argument("--accept", nargs="+", default=[], metavar="ID", help="claims whose verdict may change")
 
-    add("draw", "draw again from files, nothing simulated")
+    add(
+        "draw",
+        "draw again from files, nothing simulated: of a FOLDER such as one in results/runs, or as selected",
+        "",
+        "FOLDER|key=value",
+    )
     add("report", "build the HTML page from files")
     cross = add("crosscheck", "run the book under MuJoCo, too, and compare")
     cross.add_argument("--update", action="store_true", help="renew the table that is shipped")
@@ -238,10 +243,10 @@ def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
         if argument in ("--config-dir", "-cd"):
             if index + 1 == len(arguments):
                 raise InputError("--config-dir needs a folder")
-            extra_dir = os.path.expanduser(arguments[index + 1])
+            extra_dir = str(folder_named(arguments[index + 1], argument))
             del rest[index : index + 2]
         elif argument.startswith("--config-dir="):
-            extra_dir = os.path.expanduser(argument.partition("=")[2])
+            extra_dir = str(folder_named(argument.partition("=")[2], "--config-dir"))
             rest.remove(argument)
     if extra_dir is not None:
         _make_importable(extra_dir)
@@ -265,10 +270,19 @@ def run_overrides(overrides: Sequence[str], extra_dir: str | None = None) -> int
 
 
 def _sentences(outcome: Any) -> list[str]:
-    return [
-        f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''} failed: {reason}"
-        for reason, names in outcome.reasons().items()
-    ]
+    """What failed, and under which values that are not the book's, which may be the reason."""
+    said = []
+    for reason, names in outcome.reasons().items():
+        experiment = names[0].partition(".")[0]
+        under = _differs(experiment, outcome.differs.get(experiment, []))
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        said.append("; ".join([f"{names[0]}{more} failed: {reason}", *under]))
+    return said
+
+
+def _differs(name: str, differs: Sequence[str]) -> list[str]:
+    named = ", ".join(differs[:SHOWN]) + (f" and {len(differs) - SHOWN} more" if len(differs) > SHOWN else "")
+    return [f"{name} differs from the book in: {named}"] if differs else []
 
 
 def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
@@ -354,9 +368,8 @@ def _print_summary(outcome: Any) -> None:
     for name, reason in outcome.skipped.items():
         out.print(f"{name} skipped: {reason}", markup=False)
     for name, differs in outcome.differs.items():
-        if differs and name in outcome.folders:
-            named = ", ".join(differs[:8]) + (f" and {len(differs) - 8} more" if len(differs) > 8 else "")
-            out.print(f"{name} differs from the book in: {named}", markup=False)
+        for line in _differs(name, differs) if name in outcome.folders else ():
+            out.print(line, markup=False)
     for line in _claims_to_name(outcome):
         out.print(line, markup=False)
     if not evaluated:
@@ -480,38 +493,47 @@ def crosscheck_command(options: argparse.Namespace) -> int:
 
 
 def draw_command(options: argparse.Namespace) -> int:
-    """Draw figures and tables again from what is on disk."""
+    """``dexrepro draw [FOLDER ...] [key=value ...]``: figures and tables again from what is on disk."""
     from dexrepro.plan import plan_chapter, select
     from dexrepro.pool import sentence
     from dexrepro.report.damage import check_result
     from dexrepro.runner import redraw
     from dexrepro.selection import existing, quoted, selected
+    from dexrepro.storage import read_json
 
-    numbers, only, results, _, extra = selected(options.selection, "draw")
-    given, look, kind = dict(word.partition("=")[::2] for word in options.selection), extra.pop("style", None), None
+    folders, words = ([text for text in options.selection if ("=" in text) == keyed] for keyed in (False, True))
+    numbers, only, results, _, extra = selected(words, "draw")
+    given, look, kind = dict(word.partition("=")[::2] for word in words), extra.pop("style", None), None
     if look or "format" in extra:
         from dexrepro.report import export
 
         kind, look = export.checked(extra.pop("format", "pdf"), look or "paper")
-    found = [(n, e, existing(results) / f"chapter{n}" / e.name) for n in numbers for e in select(n, only or None, None)]
-    if extra:
-        words = [quoted(f"results={results}"), *(quoted(f"case={value}") for value in extra.values())]
-        words += [f"only=[{','.join(only)}]"] if only else []
-        plans = [plan for number in numbers for plan in plan_chapter(number, words, write=False)[0]]
-        folders = {plan.experiment: plan.folder for plan in plans}
-        found = [(n, e, folders[e.name]) for n, e, _ in found if e.name in folders]
-    found = [item for item in found if (item[2] / "run.json").exists()]
+    if folders:
+        if other := {"chapter", "only", *extra} & set(given):
+            raise InputError(f"{', '.join(sorted(other))}: a folder says which result; leave out one of the two")
+        found = [Path(folder) for folder in folders]
+    else:
+        parts = {n: select(n, only or None, None) for n in numbers}
+        found = [existing(results) / f"chapter{n}" / e.name for n, experiments in parts.items() for e in experiments]
+        if extra:
+            words = [quoted(f"results={results}"), *(quoted(f"case={value}") for value in extra.values())]
+            words += [f"only=[{','.join(only)}]"] if only else []
+            plans = [plan for number in numbers for plan in plan_chapter(number, words, write=False)[0]]
+            found = [plan.folder for plan in plans]
+        found = [folder for folder in found if (folder / "run.json").exists()]
     if not found:
         raise InputError(f"there is no such result in {results}; run first: dexrepro run {' '.join(options.selection)}")
-    for _, _, folder in found:
-        check_result(folder, "metrics.json", "config.yaml", series=True)
+    checked = [check_result(folder, "metrics.json", "config.yaml", series=True) for folder in found]
     status = OK
-    for number, experiment, folder in found:
+    for folder, experiment in zip(found, checked):
         try:
             if kind and look:
-                made = export.export(experiment, folder, results / "figures" / look, kind, look, given.get("figure"))
+                target = results / "figures" / look
+                if folder.name != experiment.name:  # of other parameters, or of some cases
+                    target /= folder.name
+                made = export.export(experiment, folder, target, kind, look, given.get("figure"))
             else:
-                redraw(number, experiment.name, folder)
+                redraw(read_json(folder / "run.json")["chapter"], experiment.name, folder)
                 made = [folder]
         except Exception as error:  # a result of another version, say; the others can still be drawn
             err.print(f"{folder} cannot be drawn, run it again: {sentence(error)}", markup=False)
@@ -723,7 +745,7 @@ def compare_command(options: argparse.Namespace) -> int:
     known, rest = _search_words(options.selection, "compare", "laws")
     if rest:
         raise InputError(f"'{rest[0]}' has no meaning here; see: dexrepro compare --help")
-    laws = tune.laws_in(Path(known["laws"]).expanduser())
+    laws = tune.laws_in(folder_named(known["laws"], "laws"))
     results, names = known["results"], known["case"].split(",")
     rows = tune.leaderboard(
         names, laws, known["metric"].split(","), known["sign"],
@@ -762,7 +784,7 @@ def _search_words(words: Sequence[str], command: str, *needed: str) -> tuple[dic
     workers = known.get("workers")
     known |= {
         "metric": known[goals[0]], "sign": 1 if goals[0] == "minimise" else -1, "budget": int(budget),
-        "results": Path(known.get("results", "results")).expanduser(),
+        "results": folder_named(known.get("results", "results")),
         "workers": positive_workers(int(workers) if workers and workers.isdigit() else workers),
     }  # fmt: skip
     return known, [word for word in words if word.partition("=")[0] not in own]

@@ -43,7 +43,7 @@ from dexrepro.plan import content_of, uses_engine
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.provenance import Provenance, provenance
 from dexrepro.runner import flat, summarise
-from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
+from dexrepro.storage import claimed, digest_of, finite, locked, opened, read_json, write_json, write_text
 
 Cases = tuple[str, ...]
 
@@ -208,7 +208,7 @@ def confirm(chapter: str, experiment: str, results: Path, update: bool = False) 
     such. The samples are those that are shipped where ``update`` renews them, else those among the results.
     """
     path = _lines(summary_file(experiment, results, update))
-    entries = {entry["index"]: entry for entry in (_read(path) if update else _all(experiment, results))}
+    entries = {entry["index"]: entry for entry in (read_samples(path) if update else _all(experiment, results))}
     old: dict[str, list[int]] = {}
     for index, entry in entries.items():
         if entry["values"] == draw(chapter, experiment, index)[0]:
@@ -244,11 +244,18 @@ def confirm(chapter: str, experiment: str, results: Path, update: bool = False) 
 
 
 def _is_same(name: str, old: Mapping[str, Any], new: Mapping[str, Any], known: Mapping[str, Mapping[str, Any]]) -> bool:
-    """Whether a case of a sample gave the same numbers twice; both may have failed."""
+    """Whether a case of a sample gave the same numbers twice, or failed twice with the same words."""
     was, now = ({f"{name}.{key}": value for key, value in row.get("metrics", {}).items()} for row in (old, new))
     exact = {"rtol": 2e-6, "atol": 0.0}  # samples keep six digits
     entries = {key: {**known.get(key, exact), "value": value} for key, value in was.items()}
+    if _words(old) != _words(new):
+        return False
     return was.keys() == now.keys() and all(baselines.agrees(now[key], entry) for key, entry in entries.items())
+
+
+def _words(row: Mapping[str, Any]) -> list[str]:
+    """Why a case failed, without its numbers, in which rounding may show."""
+    return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", str(row.get("error", ""))).split()
 
 
 def metrics_of(chapter: str, experiment: str, entry: Mapping[str, Any]) -> Metrics:
@@ -407,12 +414,12 @@ def _kept(
 
 def _all(experiment: str, results: Path) -> Iterator[dict[str, Any]]:
     for update in (True, False):
-        yield from _read(_lines(summary_file(experiment, results, update)))
+        yield from read_samples(_lines(summary_file(experiment, results, update)))
 
 
 def shipped_samples(experiment: str) -> list[dict[str, Any]]:
     """The samples that are shipped, whatever simulation made them."""
-    return list(_read(_lines(summary_file(experiment, Path(), shipped=True))))
+    return list(read_samples(_lines(summary_file(experiment, Path(), shipped=True))))
 
 
 def _folder(results: Path) -> Path:
@@ -572,10 +579,17 @@ def _standard_ranks(rows: Array) -> Array:
     return (ranks - ranks.mean(axis=1, keepdims=True)) / ranks.std(axis=1, keepdims=True)
 
 
-def _read(path: Path) -> Iterator[dict[str, Any]]:
+def read_samples(path: Path) -> Iterator[dict[str, Any]]:
     """The samples of a file; what is none (a line may have been cut short) is left out."""
-    data = path.read_bytes() if path.exists() else b""
-    for line in (gzip.decompress(data) if path.suffix == ".gz" and data else data).splitlines():
+    try:
+        data = b""
+        if path.exists():
+            with opened(path) as file:
+                data = file.read()
+        lines = (gzip.decompress(data) if path.suffix == ".gz" and data else data).splitlines()
+    except (OSError, EOFError, zlib.error) as error:
+        raise InputError(f"{path} holds no samples of a study ({error}); remove it") from error
+    for line in lines:
         with suppress(ValueError, RecursionError, TypeError, LookupError, AttributeError):
             entry = json.loads(line)
             sound = isinstance(entry["index"], int) and entry["index"] >= 0 and isinstance(entry["values"], dict)

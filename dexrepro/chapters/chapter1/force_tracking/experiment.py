@@ -51,6 +51,11 @@ def scene(config: Config) -> World:
     return world
 
 
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    leader, follower = np.split(recording["joints"], 2, axis=1)
+    return Recording({"time": recording.time, "leader.position": leader, "follower.position": follower})
+
+
 def simulate(config: Config, rng: Rng) -> Recording:
     dt, law = config.control_period, HoldingDrive(config.law)
     with scene(config) as world:
