@@ -13,6 +13,7 @@ from typing import Any
 import jinja2
 
 from dexrepro import __version__, chapters, crosscheck, study
+from dexrepro.claims import TIE
 from dexrepro.report import equations, explorer, studies, symbols, verdicts, words
 from dexrepro.report.contents import Contents, in_book_order
 from dexrepro.report.damage import check_result
@@ -85,6 +86,7 @@ class _Report:
             "examples": verdicts.examples(claims),
             "never": verdicts.never_failed(claims),
             "agreeing": agreeing,
+            "tie": TIE,
         }
         self._page("verdicts", here="verdicts", **told, **common)
         self._page("symbols", here="symbols", **common)

@@ -24,7 +24,8 @@ FIGURES = {
         "5 s; the contact position x_d that gives the desired force, the reference x_r and the stiffness; the Lyapunov "
         "function of Eq. (1.34) along the run, which the book does not draw (W*: exact and small in case 1, elsewhere "
         "the best constant weights of moderate size).",
-        "The proposed law has the smallest force error of three controllers in all three cases.",
+        "Force errors of three controllers over time in three cases, contact position, reference and Lyapunov "
+        "function.",
     ),
 }
 UNITS = {

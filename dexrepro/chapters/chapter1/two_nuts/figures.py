@@ -15,11 +15,11 @@ FIGURES = {
     "1.13": Figure(
         "General mapping, one synthetic operator: roll of the hand with the comfortable band and the range of the "
         "forearm, and the tool's distance from the nearer nut. The book shows five photographs.",
-        "The hand stays far outside its comfortable range and the tool shakes by about a millimetre.",
+        "Roll of the hand with its comfortable band, and the tool's distance from the nearer nut, over time.",
     ),
     "1.14": Figure(
         "Re-fixing and a scale of 1, the same synthetic operator. The book shows five photographs.",
-        "With re-fixing the hand hardly leaves its comfortable range, and the tool shakes less.",
+        "Roll of the hand with its comfortable band, and the tool's distance from the nearer nut, over time.",
     ),
 }
 UNITS = {"roll": "rad", "tool_roll": "rad", "hand": "m", "tool": "m", "scale": "1"}

@@ -15,10 +15,11 @@ FIGURES = {
         "Two arms of a Baxter robot face each other with a balloon between their grippers.",
     ),
     "2.10": Figure(
-        "Simulated Baxter, balloon as a spring of 150 N/m. (a), (b) Path of the follower's gripper from two starts; "
-        "(c), (d) contact force on it. Contact comes at y = 0.21 to 0.22 m (book: about 0.25 m; it shifts with the "
-        "balloon's size, which is not printed).",
-        "From both starts the follower reaches the same place and the force becomes 10 N along the holding line.",
+        "Simulated Baxter, balloon as a spring of {balloon_static.stiffness:g} N/m. (a), (b) Path of the follower's "
+        "gripper from two starts; (c), (d) contact force on it. Contact comes at y = "
+        "{balloon_static.off_100.contact_y:.2f} and {balloon_static.off_80.contact_y:.2f} m (farther out in the book; "
+        "it shifts with the balloon's size, which is not printed).",
+        "Paths of the follower's gripper from two starts, and the contact forces over time.",
     ),
 }
 UNITS = {"reference": "m"}

@@ -13,7 +13,7 @@ FIGURES = {
         "with the exact signals of Traj. 1; vertical lines: where the explicit step reaches its limit, dt c t^4 = 2. "
         "(b) Fall of the Lyapunov function (2.19) for constant parameters, and the sum of its exact discrete "
         "decrements. Not in the book.",
-        "With time counted from the start the law diverges when its step limit is passed.",
+        "Prediction error over time for several rates, and a Lyapunov function beside the sum of its decrements.",
     ),
 }
 UNITS = {"lyapunov": "N² s", "change": "N² s", "exact_change": "N² s", "predicted_fall": "N² s", "error": "N"}

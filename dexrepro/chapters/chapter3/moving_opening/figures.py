@@ -21,12 +21,12 @@ FIGURES = {
     "3.15": Figure(
         "Path of the moving remote centre, ours: the book draws its path without numbers. Seen from above and "
         "over time.",
-        "The centre of the opening runs through a figure of eight of 10 cm by 6 cm in 10 s.",
+        "The centre of the opening runs through a figure of eight.",
     ),
     "3.16": Figure(
         "Distance to the target and Dis_R while the opening moves (simulated; lid and box are collision bodies for the "
         "whole method). The law knows, without noise or delay, where the opening is, and not how fast it moves.",
-        "The arm follows the moving opening within a few millimetres.",
+        "Distance to the target and to the opening's centre over time while the opening moves.",
     ),
 }
 UNITS = {

@@ -15,10 +15,10 @@ from .experiment import of_shapes
 FIGURES = {
     "5.H": Figure(
         "The letters' claims on the LASA handwriting set, written by people on a tablet (not in the book): the first "
-        "recording of each shape, its colour the IDMP's error over the DMP+'s with 20 kernels; the share of the shapes "
-        "on which each claim of the book and its control hold; and, shape by shape, the share of the draws of kernels "
-        "in which the methods are ordered as printed. All shapes meet the same draws. A result on the synthetic A "
-        "need not hold on these.",
+        "recording of each shape, its colour the IDMP's error over the DMP+'s with many kernels; the share of the "
+        "shapes on which each claim of the book and its control hold; and, shape by shape, the share of the draws of "
+        "kernels in which the methods are ordered as printed. All shapes meet the same draws. A result on the "
+        "synthetic A need not hold on these.",
         "Small pictures of handwritten shapes, bars of the share of shapes on which each claim holds, and the order "
         "of the methods on each shape.",
     ),
