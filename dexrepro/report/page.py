@@ -41,7 +41,7 @@ def templates() -> jinja2.Environment:
     """What the pages are made of."""
     loader = jinja2.PackageLoader("dexrepro.report", "templates")
     made = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    filters = (words.breakable, words.number, words.short_number, words.percent, words.prose)
+    filters = (words.breakable, words.number, words.short_number, words.percent, words.prose, words.unit)
     made.filters |= {function.__name__: function for function in filters}
     made.globals |= {"VERDICTS": verdicts.VERDICTS, "MARKS": verdicts.MARKS}
     return made
@@ -92,7 +92,9 @@ class _Report:
         self._page("symbols", here="symbols", **common)
         self._page("equations", here="equations", equations=index, **common)
         for number, rows in itertools.groupby(index, lambda row: row["chapter"]):
-            self._page(f"equations{number}", "equations", here="", number=number, equations=list(rows), **common)
+            self._page(
+                f"equations{number}", "equations", here="equations", number=number, equations=list(rows), **common
+            )
         self._write_sources(common["provenance"])
         self._write_assets(book)
 

@@ -34,6 +34,11 @@ def prose(text: str) -> Markup:
     return Markup("").join([*parts, escape(text[end:])])
 
 
+def unit(text: str) -> Markup:
+    """A unit with its exponents raised: "kg m^2"."""
+    return Markup(re.sub(r"\^(-?[\d.]+|\w)", r"<sup>\1</sup>", str(escape(text))))
+
+
 def column_kind(column: pd.Series[Any]) -> str:
     """How a table's column is set: "number", "words" (some cell is a phrase, so that it needs width) or ""."""
     if column.dtype.kind in "if":
