@@ -355,3 +355,14 @@ class Erratum:
     def __post_init__(self) -> None:
         if self.kind not in ERRATUM_KINDS:
             raise ValueError(f"{self.id}: kind '{self.kind}' is none of {', '.join(ERRATUM_KINDS)}")
+
+
+def _of_kind(kind: str) -> Callable[..., Erratum]:
+    def erratum(id: str, equation: str, *more: Any, **named: Any) -> Erratum:
+        return Erratum(id, equation, kind, *more, **named)
+
+    return erratum
+
+
+error, gap, reading, slip = map(_of_kind, ERRATUM_KINDS)
+"""An ``Erratum`` of each kind, called without it."""
