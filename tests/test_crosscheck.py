@@ -7,10 +7,11 @@ import pytest
 
 from dexrepro import baselines, cli, crosscheck, study
 from dexrepro.baselines import Baseline
+from dexrepro.claims import NOT_EVALUATED
 from dexrepro.crosscheck import Comparison, Difference
 from dexrepro.errors import InputError
 from dexrepro.physics import engine
-from dexrepro.plan import plan_chapter
+from dexrepro.plan import plan_chapter, uses_engine
 
 ARMS, NONE = "arm_obstacles", "planar_skill"  # experiments of chapter 6 with simulated arms, and without
 
@@ -102,15 +103,30 @@ def test_samples_of_another_engine_count_while_the_engines_agree(tmp_path, monke
     sample = {"index": 0, "engine": "mujoco"}
     contents = study._contents("2", "holding_line", sample)
     assert contents != study._contents("2", "holding_line", {"index": 0})
-    sample["cases"] = {case: {"content": content, "metrics": {}} for case, content in contents.items()}
-    monkeypatch.setattr(study, "_all", lambda *_: [sample])
+    samples = [sample, {"index": 1}]
+    for entry in samples:
+        contents = study._contents("2", "holding_line", entry)
+        entry["cases"] = {case: {"content": content, "metrics": {}} for case, content in contents.items()}
+    monkeypatch.setattr(study, "_all", lambda *_: samples)
     for verdicts, counts in ((("reproduced", "reproduced"), True), (("reproduced", "not reproduced"), False)):
         crosscheck.keep([comparison(verdicts)], crosscheck.table(tmp_path))
-        assert bool(study._kept("2", "holding_line", tmp_path)) is counts
+        assert study._kept("2", "holding_line", tmp_path).keys() == ({0, 1} if counts else {1})
 
 
-def test_the_shipped_table_is_of_claims_that_there_are():
+def test_the_shipped_table_is_of_today_s_baselines_and_of_all_experiments_with_simulated_arms():
     from dexrepro import chapters
 
-    known = {claim.id for number in chapters.numbers() for claim in chapters.load(number).claims}
-    assert {key for item in crosscheck.stored(crosscheck.table(Path(), shipped=True)) for key in item.claims} <= known
+    shipped = {item.experiment: item for item in crosscheck.stored(crosscheck.table(Path(), shipped=True))}
+    simulated = {
+        (experiment.name, number)
+        for number in chapters.numbers()
+        for experiment in chapters.load(number).experiments
+        if uses_engine(experiment)
+    }
+    assert {(name, item.chapter) for name, item in shipped.items()} == simulated
+    for item in shipped.values():
+        stored = Baseline.of(item.chapter, item.experiment)
+        assert item.compared == len(stored.metrics)
+        assert all(entry.reference == stored.metrics[entry.name]["value"] for entry in item.metrics)
+        known = {key: verdict for key, verdict in stored.claims.items() if verdict != NOT_EVALUATED}
+        assert {key: reference for key, (reference, _) in item.claims.items()} == known
