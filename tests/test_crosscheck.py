@@ -27,6 +27,7 @@ def plan(*words: str):
     return found[ARMS], found[NONE]
 
 
+@pytest.mark.skipif(not engine.is_installed("pybullet"), reason="there is one engine")
 def test_another_engine_is_another_result_where_arms_are_simulated():
     (arms, none), (other_arms, other_none) = plan(), plan("engine=mujoco")
     assert other_arms.differs == ["engine=mujoco"]
