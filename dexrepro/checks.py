@@ -58,6 +58,8 @@ def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: st
             check_types(value, book, f"{where}.{key}")
         numbers = [is_number(item) for _, item in leaves(book)]
         if not isinstance(book, Mapping) and numbers and all(numbers):
+            if isinstance(value, Mapping):
+                raise InputError(f"{where}.{key} = {dict(value)} is not allowed: it must be a number")
             for place, item in leaves(value):
                 quantity = _POSITIVE.search(key) or _NOT_NEGATIVE.search(key)
                 if not is_number(item) and (item is not None or quantity):
@@ -123,6 +125,15 @@ def set_value(node: Any, dotted: str, value: Any) -> None:
     node[last] = value
 
 
+def same(a: Any, b: Any) -> bool:
+    """Whether two values are equal, where true is no number."""
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(same, a, b))
+    return bool(a == b) and isinstance(a, bool) == isinstance(b, bool)
+
+
 def differences(config: Mapping[str, Any], shipped: Mapping[str, Any], prefix: str = "") -> list[str]:
     """Keys in which two configurations differ, as ``key=value (book: value)``."""
     found: list[str] = []
@@ -132,6 +143,6 @@ def differences(config: Mapping[str, Any], shipped: Mapping[str, Any], prefix: s
             found += differences(mine, theirs, f"{prefix}{key}.")
         elif key not in config:
             found.append(f"{prefix}{key} left out")
-        elif mine != theirs:
+        elif key not in shipped or not same(mine, theirs):
             found.append(f"{prefix}{key}={mine} (book: {theirs if key in shipped else 'absent'})")
     return found

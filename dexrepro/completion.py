@@ -30,7 +30,7 @@ def words(prefix: str, parsed_args: argparse.Namespace, **_: Any) -> Iterator[st
     numbers = [number for number in chapters.numbers() if given.get("chapter", number).strip("'\"") == number]
     key, equals, _value = prefix.partition("=")
     if equals:
-        yield from (f"{key}={value}" for value in _values(key, numbers, given))
+        yield from (f"{key}={value}" for value in _values(key, numbers, given, parsed_args))
     elif "." in prefix:
         yield from (f"{name}=" for number in numbers for name in _parameters(number, prefix))
     else:
@@ -40,13 +40,15 @@ def words(prefix: str, parsed_args: argparse.Namespace, **_: Any) -> Iterator[st
             yield from (f"{name}." for number in numbers for name in chapters.names(number))
 
 
-def _values(key: str, numbers: Iterable[str], given: dict[str, str]) -> Iterable[str]:
+def _values(key: str, numbers: Iterable[str], given: dict[str, str], parsed: argparse.Namespace) -> Iterable[str]:
     if key == "chapter":
         return chapters.numbers()
     if key == "only":
         return [name for number in numbers for name in chapters.names(number)]
     if key == "format":
-        return ("gif", "mp4")
+        return ("pdf", "png", "svg") if getattr(parsed, "command", "") == "draw" else ("gif", "mp4")
+    if key == "style":
+        return ("paper", "slides", "dark")
     if key not in ("figure", "claim", "case"):
         return ()
     loaded = [chapters.load(number) for number in numbers]

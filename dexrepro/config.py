@@ -22,6 +22,7 @@ if TYPE_CHECKING:  # Hydra is imported where it is needed: it takes as long as a
     from hydra.core.override_parser.types import Override
 
 SETTINGS = ("only", "case", "figure", "seed", "engine", "results", "workers", "case_timeout", "force", "quiet", "gui")
+CASE = r"[\w+-]+"  # what names a case, and its files
 
 
 def config_dir() -> Path:
@@ -63,11 +64,14 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
 
     search = [f"hydra.searchpath=[{in_quotes(f'file://{Path(extra_dir).resolve()}')}]"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
+    understood(overrides)
     try:
         if added:
             raw = _compose(chapter, [*added, *search])
         check_overrides(overrides, inherited(raw))
         composed = inherited(_compose(chapter, [*forced(overrides, raw), *search]))
+    except RecursionError:
+        raise InputError("an override is nested too deeply") from None
     except (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, TypeError) as error:
         raise InputError(" ".join(str(error.__cause__ or error).split())) from error
     if unknown := [key for key in composed if key not in shipped]:
@@ -248,7 +252,7 @@ def parsed(text: str) -> Override | None:
 
     try:
         return OverridesParser.create().parse_override(text)
-    except HydraException:
+    except (HydraException, ValueError, RecursionError):  # the latter for thousands of digits or brackets
         return None
 
 
@@ -257,15 +261,24 @@ def in_quotes(text: str) -> str:
     return "'" + text.replace("'", "\\'") + ("\\'" if text.endswith("\\") else "'")
 
 
+def understood(overrides: Sequence[str]) -> list[Override]:
+    """Overrides as Hydra reads them. Raises InputError for a word that is none of them or names no key."""
+    found = []
+    for text in overrides:
+        override = parsed(text)
+        if override is None or not override.key_or_group:
+            raise InputError(
+                f"'{text[:200]}' is not an override of the form key=value, such as chapter=2, only=EXPERIMENT or "
+                "figure=2.7"
+            )
+        found.append(override)
+    return found
+
+
 def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> None:
     """Refuse overrides that do not parse or whose key the shipped configuration does not have."""
     keys = list(_keys(shipped))
-    for text in overrides:
-        override = parsed(text)
-        if override is None:
-            raise InputError(
-                f"'{text}' is not an override of the form key=value, such as chapter=2, only=EXPERIMENT or figure=2.7"
-            )
+    for override in understood(overrides):
         key = override.key_or_group
         if override.is_add() or override.is_force_add() or "/" in key or key.startswith("hydra"):
             continue
@@ -331,7 +344,7 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
             where = f"{experiment}.cases.{name}".rstrip(".")
             raise InputError(f"{where} = {case} is not allowed: cases are names with what each changes")
     for name, overrides in _expanded(given or {"default": {}}, names, experiment, base):
-        if name == "summary" or not re.fullmatch(r"[\w+-]+", name):
+        if name == "summary" or not re.fullmatch(CASE, name):
             raise InputError(
                 f"{experiment}.cases: '{name}' is not allowed as a name: use letters, digits and '_', and not 'summary'"
             )

@@ -4,10 +4,24 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
 
 
 class InputError(Exception):
     """Something the user wrote cannot be used; the message is one sentence that says what would be right."""
+
+
+def folder_named(name: str, key: str = "results") -> Path:
+    """A folder as the user names it, "~" being the home. Raises InputError where no folder can have the name."""
+    try:
+        path = Path(name).expanduser()
+        with suppress(FileNotFoundError, NotADirectoryError):
+            path.stat()
+    except (RuntimeError, ValueError, OSError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{key} = {name[:80]!r} is not allowed: it names no folder ({reason})") from error
+    return path
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

@@ -24,7 +24,7 @@ KEYS = {
     "hours": ("NUMBER", "begin no draw after so many hours"),
     "tune.case": ("EXPERIMENT.CASE", "the case to be tuned"),
     "compare.case": ("EXPERIMENT.CASE", "the cases, with commas between them, whose law is replaced"),
-    "draw.format": ("KIND", "pdf, png or svg, in results/figures/STYLE; the result stays as it is"),
+    "draw.format": ("KIND", "pdf, png or svg, in results/figures/STYLE (of a changed run: STYLE/RUN)"),
     "laws": ("FOLDER", "a folder with laws, which are to stand beside the book's"),
     "minimise": ("METRIC", "the metric of the case that is to be least"),
     "maximise": ("METRIC", "or the one that is to be greatest"),
@@ -32,22 +32,12 @@ KEYS = {
     "jobs": ("NUMBER", "jobs that share the draws, by hydra/launcher=joblib, ray or submitit_slurm"),
 }  # fmt: skip
 SELECTION = ("chapter", "only", "figure", "results")
-TAKEN = {
-    "run": (*SELECTION, "case", "seed", "engine", "workers", "case_timeout", "force", "quiet", "gui"),
-    "check": (*SELECTION, "case", "workers"),
-    "draw": (*SELECTION, "case", "format", "style"),
-    "report": ("results",),
-    "crosscheck": (*SELECTION, "workers"),
-    "show": ("results",),
-    "study": (*SELECTION, "case", "claim", "samples", "hours", "engine", "jobs", "workers"),
-    "tune": ("case", "minimise", "maximise", "budget", "results", "workers"),
-    "compare": ("laws", "case", "minimise", "maximise", "budget", "results", "workers"),
-    "render": (*SELECTION, "case", "format", "allow"),
-}
-"""What each command takes."""
+TAKEN: dict[str, tuple[str, ...]] = {}
+"""What each command takes, as it declares it (see ``commands``)."""
 
 
 def described(command: str) -> str:
     """The keys of a command for its help, a line each."""
-    rows = ((key, *KEYS.get(f"{command}.{key}", KEYS[key])) for key in TAKEN[command])
-    return "keys:\n" + "\n".join(f"  {f'{key}={value}':<22}  {meaning}" for key, value, meaning in rows)
+    rows = [(key, *KEYS.get(f"{command}.{key}", KEYS[key])) for key in TAKEN.get(command, ())]
+    lines = [f"  {f'{key}={value}':<22}  {meaning}" for key, value, meaning in rows]
+    return "\n".join(["keys:", *lines]) if lines else ""

@@ -20,9 +20,9 @@ from typing import Any
 
 from dexrepro import chapters, closure
 from dexrepro.case import targets
-from dexrepro.checks import check_lengths, check_types, check_words, differences, leaves
+from dexrepro.checks import check_lengths, check_types, check_words, differences, leaves, same
 from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block
-from dexrepro.errors import InputError, nearest
+from dexrepro.errors import InputError, folder_named, nearest
 from dexrepro.experiment import Experiment
 from dexrepro.physics.engine import REFERENCE, default
 from dexrepro.provenance import words_of
@@ -106,7 +106,7 @@ def plan_chapter(
     shipped = compose_chapter(chapter)
     if config["gui"]:
         _require_display()
-    results = Path(config["results"]).expanduser()
+    results = folder_named(config["results"])
     if write:
         writable(results)
     plans, skipped = [], {}
@@ -123,6 +123,8 @@ def _of_cases(plans: list[Plan], wanted: str | Sequence[str] | None) -> list[Pla
     if wanted is None:
         return plans
     patterns = [str(name) for name in (wanted if isinstance(wanted, list) else [wanted])]
+    if not patterns:
+        raise InputError("case = [] is not allowed: it must name a case")
     names = [job.case for plan in plans for job in plan.jobs]
     for pattern in patterns:
         if not fnmatch.filter(names, pattern):
@@ -192,7 +194,7 @@ def _plan(
 
 
 def _as_shipped(config: Mapping[str, Any], shipped: Mapping[str, Any]) -> bool:
-    return all(config.get(key) == shipped.get(key) for key in {*config, *shipped} - {*SETTINGS, "hydra"} | {"seed"})
+    return all(same(config.get(key), shipped.get(key)) for key in {*config, *shipped} - {*SETTINGS, "hydra"} | {"seed"})
 
 
 def _differs(

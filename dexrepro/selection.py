@@ -20,7 +20,7 @@ from dexrepro.config import (
     own_keys,
     parsed,
 )
-from dexrepro.errors import InputError, nearest
+from dexrepro.errors import InputError, folder_named, nearest
 from dexrepro.keys import KEYS, SELECTION, TAKEN
 from dexrepro.plan import select
 
@@ -64,7 +64,7 @@ def selected(words: Iterable[str], command: str) -> Selection:
     return Selection(
         numbers,
         only,
-        Path(values.get("results", "results").strip("'\"")).expanduser(),
+        folder_named(values.get("results", "results").strip("'\"")),
         positive_workers(int(workers) if workers and workers.isdigit() else workers),
         {key: value for key, value in values.items() if key in extra},
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import errno
 import hashlib
 import html
 import json
@@ -14,7 +15,7 @@ import shutil
 import uuid
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 import yaml
@@ -85,7 +86,7 @@ def copy(source: str | Path, target: str | Path) -> None:
     """Copy a file with its times; where the file system can share the content until one changes, it does."""
     source, target = Path(source), Path(target)
     try:
-        with open(source, "rb") as old, open(target, "wb") as new:
+        with opened(source) as old, open(target, "wb") as new:
             while os.copy_file_range(old.fileno(), new.fileno(), 1 << 30):
                 pass
         shutil.copystat(source, target)
@@ -116,9 +117,16 @@ def claimed(folder: Path, name: str, wait: bool = True) -> Iterator[bool]:
         yield False
 
 
+def opened(path: Path) -> BinaryIO:
+    """A file to be read. Raises OSError where it is none, such as a pipe, on which one would wait for ever."""
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "it is no file", str(path))
+    return open(path, "rb")
+
+
 def read_text(path: Path, limit: int = 1 << 26) -> str:
     """The content of a text file. Raises ValueError beyond ``limit`` bytes: nothing written here is so large."""
-    with open(path, "rb") as file:
+    with opened(path) as file:
         content = file.read(limit + 1)
     if len(content) > limit:
         raise ValueError(f"it is larger than {limit >> 20} MB")
@@ -177,9 +185,26 @@ def write_text(path: Path, text: str) -> None:
 def read_json(path: Path) -> Any:
     """The content of a JSON file. Raises ValueError where it is none."""
     try:
-        return json.loads(read_text(path))
+        return json.loads(read_text(path), parse_int=_whole)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
+
+
+def _whole(digits: str) -> int:
+    if len(digits) > 300:
+        raise ValueError("it holds a number of more than 300 digits")
+    return int(digits)
+
+
+def require(data: Any, kinds: Mapping[str, Any], where: str = "") -> None:
+    """Raise ValueError where data is no dict that has these keys, each of its kind; true is no number."""
+    if not isinstance(data, dict):
+        raise ValueError(f"{where.rstrip('.') or 'it'} holds no dict")
+    for key, kind in kinds.items():
+        if key not in data:
+            raise ValueError(f"it has no '{where}{key}'")
+        if not isinstance(data[key], kind) or isinstance(data[key], bool):
+            raise ValueError(f"{where}{key} = {str(data[key])[:40]!r} is of another kind")
 
 
 def finite(data: Any) -> Any:

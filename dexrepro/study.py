@@ -20,7 +20,7 @@ import time
 import zlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import chdir, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -43,7 +43,7 @@ from dexrepro.plan import content_of, uses_engine
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.provenance import Provenance, provenance
 from dexrepro.runner import flat, summarise
-from dexrepro.storage import claimed, digest_of, finite, locked, read_json, write_json, write_text
+from dexrepro.storage import claimed, digest_of, finite, locked, opened, read_json, require, write_json, write_text
 
 Cases = tuple[str, ...]
 
@@ -174,7 +174,9 @@ def evaluate(
             continue
         start = time.perf_counter()
         try:
-            found: dict[str, Any] = {"metrics": _rounded(finite(run_case(definition, live(config), seed)[1]))}
+            with chdir("."):  # a law may go elsewhere
+                metrics = run_case(definition, live(config), seed)[1]
+            found: dict[str, Any] = {"metrics": _rounded(finite(metrics))}
         except Exception as problem:
             found = {"error": f"{type(problem).__name__}: {' '.join(str(problem).split())}"}
         cases[case] = {"content": content, **found, "seconds": round(time.perf_counter() - start, 3)}
@@ -208,7 +210,7 @@ def confirm(chapter: str, experiment: str, results: Path, update: bool = False) 
     such. The samples are those that are shipped where ``update`` renews them, else those among the results.
     """
     path = _lines(summary_file(experiment, results, update))
-    entries = {entry["index"]: entry for entry in (_read(path) if update else _all(experiment, results))}
+    entries = {entry["index"]: entry for entry in (read_samples(path) if update else _all(experiment, results))}
     old: dict[str, list[int]] = {}
     for index, entry in entries.items():
         if entry["values"] == draw(chapter, experiment, index)[0]:
@@ -244,11 +246,18 @@ def confirm(chapter: str, experiment: str, results: Path, update: bool = False) 
 
 
 def _is_same(name: str, old: Mapping[str, Any], new: Mapping[str, Any], known: Mapping[str, Mapping[str, Any]]) -> bool:
-    """Whether a case of a sample gave the same numbers twice; both may have failed."""
+    """Whether a case of a sample gave the same numbers twice, or failed twice with the same words."""
     was, now = ({f"{name}.{key}": value for key, value in row.get("metrics", {}).items()} for row in (old, new))
     exact = {"rtol": 2e-6, "atol": 0.0}  # samples keep six digits
     entries = {key: {**known.get(key, exact), "value": value} for key, value in was.items()}
+    if _words(old) != _words(new):
+        return False
     return was.keys() == now.keys() and all(baselines.agrees(now[key], entry) for key, entry in entries.items())
+
+
+def _words(row: Mapping[str, Any]) -> list[str]:
+    """Why a case failed, without its numbers, in which rounding may show."""
+    return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", str(row.get("error", ""))).split()
 
 
 def metrics_of(chapter: str, experiment: str, entry: Mapping[str, Any]) -> Metrics:
@@ -313,25 +322,31 @@ def run(
     if samples is not None:
         _refuse_fewer(chapter, experiment, samples, results, target)
     deadline = time.time() + 3600 * hours if hours else float("inf")
-    claims = chapters.load(chapter).claims_of(experiment)
-    names, undecided = list(draw(chapter, experiment, 0)[1]["cases"]), claims
+    claims = undecided = chapters.load(chapter).claims_of(experiment)
+    names, failed = list(draw(chapter, experiment, 0)[1]["cases"]), []
+    kept = _kept(chapter, experiment, results, only=only)
     with Pool(workers) as pool:
-        for look in [samples] if samples is not None else LOOKS:
-            kept = _kept(chapter, experiment, results, only=only)
+        for look in (0, *([samples] if samples is not None else LOOKS)):  # first at what there is
             wanted = tuple(case for case in _cases_of(undecided, names) if not only or case in only)
-            for index in range(look):
-                if not {*wanted} <= kept.get(index, {"cases": {}})["cases"].keys():
-                    pool.add(index, contribute, chapter, experiment, index, results, deadline, engine, wanted)
+            lacking = [i for i in range(look) if i not in kept or not {*wanted} <= kept[i]["cases"].keys()]
+            if not lacking and (look or not kept):
+                continue
+            for index in lacking:
+                pool.add(index, contribute, chapter, experiment, index, results, deadline, engine, wanted)
             failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
             with locked(_folder(results)):  # who ends last sees every sample
-                entries = list(_kept(chapter, experiment, results, only=only).values())
-                found = summary(chapter, experiment, entries)
-                if len(entries) >= _held(target):  # fewer where the hours are over
-                    _write_lines(_lines(target), entries)
+                kept = _kept(chapter, experiment, results, only=only) if lacking else kept
+                found = summary(chapter, experiment, list(kept.values()))
+                if len(kept) >= _held(target):  # fewer where the hours are over
+                    _write_lines(_lines(target), list(kept.values()))
                     write_json(target, found)
-            undecided = [c for c in claims if found["claims"].get(c.id, {}).get("word") == OPEN]
-            if failed or time.time() > deadline or not undecided:
+            if failed or time.time() > deadline:
                 break
+            if samples is None:  # what has no number to judge by, after draws of it, has none after more
+                unknown = {"word": OPEN if look == 0 else ""}
+                undecided = [c for c in claims if found["claims"].get(c.id, unknown)["word"] == OPEN]
+                if not undecided:
+                    break
     if failed:
         index, reason = failed[0]
         more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
@@ -401,12 +416,12 @@ def _kept(
 
 def _all(experiment: str, results: Path) -> Iterator[dict[str, Any]]:
     for update in (True, False):
-        yield from _read(_lines(summary_file(experiment, results, update)))
+        yield from read_samples(_lines(summary_file(experiment, results, update)))
 
 
 def shipped_samples(experiment: str) -> list[dict[str, Any]]:
     """The samples that are shipped, whatever simulation made them."""
-    return list(_read(_lines(summary_file(experiment, Path(), shipped=True))))
+    return list(read_samples(_lines(summary_file(experiment, Path(), shipped=True))))
 
 
 def _folder(results: Path) -> Path:
@@ -516,13 +531,21 @@ def stored(results: Path) -> list[dict[str, Any]]:
     return found
 
 
+NUMBER = (int, float)
+ROW = {"samples": int, "holds": int, "share": NUMBER, "low": NUMBER, "high": NUMBER, "median_margin": NUMBER,
+       "parameter": (str, type(None)), "correlation": (int, float, type(None))}  # fmt: skip
+
+
 def _summary(path: Path) -> dict[str, Any]:
     """A stored summary. Raises InputError where the file is none."""
     try:
         found: dict[str, Any] = read_json(path)
-        numbers = [found["samples"], *(row[key] for row in found["claims"].values() for key in ("samples", "holds"))]
-        if not all(isinstance(number, int) for number in numbers) or not isinstance(found["chapter"], str):
-            raise ValueError("it counts no samples of a chapter")
+        require(found, {"chapter": str, "experiment": str, "samples": int, "varied": dict, "claims": dict})
+        for key, row in found["claims"].items():
+            require(row, ROW, f"{key}.")
+            quantiles = row.get("quantiles") or [row["median_margin"]] * len(QUANTILES)
+            if len(quantiles) != len(QUANTILES) or not all(isinstance(size, int | float) for size in quantiles):
+                raise ValueError(f"{key}.quantiles = {quantiles} is of another kind")
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
         reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
         raise InputError(f"{path} is no study ({reason}); remove it and repeat: dexrepro study") from error
@@ -566,10 +589,17 @@ def _standard_ranks(rows: Array) -> Array:
     return (ranks - ranks.mean(axis=1, keepdims=True)) / ranks.std(axis=1, keepdims=True)
 
 
-def _read(path: Path) -> Iterator[dict[str, Any]]:
+def read_samples(path: Path) -> Iterator[dict[str, Any]]:
     """The samples of a file; what is none (a line may have been cut short) is left out."""
-    data = path.read_bytes() if path.exists() else b""
-    for line in (gzip.decompress(data) if path.suffix == ".gz" and data else data).splitlines():
+    try:
+        data = b""
+        if path.exists():
+            with opened(path) as file:
+                data = file.read()
+        lines = (gzip.decompress(data) if path.suffix == ".gz" and data else data).splitlines()
+    except (OSError, EOFError, zlib.error) as error:
+        raise InputError(f"{path} holds no samples of a study ({error}); remove it") from error
+    for line in lines:
         with suppress(ValueError, RecursionError, TypeError, LookupError, AttributeError):
             entry = json.loads(line)
             sound = isinstance(entry["index"], int) and entry["index"] >= 0 and isinstance(entry["values"], dict)

@@ -6,7 +6,6 @@ import importlib.util
 import os
 import sys
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import hydra
@@ -15,7 +14,7 @@ from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 
 from dexrepro.config import config_dir, in_quotes
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, folder_named
 
 PLUGINS = {  # by launcher: the package that has it, and the extra that brings it
     "ray": ("hydra_plugins.hydra_ray_launcher", "ray"),
@@ -36,7 +35,7 @@ def launch(arguments: Sequence[str], job: Callable[[Any], None]) -> None:
     plugin, extra = PLUGINS.get(values.get("hydra/launcher", ""), ("", ""))
     if extra and importlib.util.find_spec(plugin) is None:
         raise InputError(f"hydra/launcher={values['hydra/launcher']} needs: pip install 'dexrepro[{extra}]'")
-    results = Path(values.get("results", "results").strip("'\"")).expanduser()
+    results = folder_named(values.get("results", "results").strip("'\""))
     sweep = in_quotes(str((results / ".sweep").absolute()))
     sys.argv = ["dexrepro run", *flags, f"hydra.sweep.dir={sweep}", *overrides]
     os.environ["HYDRA_FULL_ERROR"] = "1"  # Hydra raises instead of printing a traceback

@@ -13,6 +13,8 @@ def decoded(data: bytes, encoding: str | None = None) -> str:
 
     Zeros at the end, which some programs leave, are dropped. Raises ValueError with half a sentence.
     """
+    if data.startswith((b"PK\x03\x04", b"\x1f\x8b", b"\xd0\xcf\x11\xe0")):
+        raise ValueError("it is a spreadsheet or an archive, not text; export or unpack it first")
     kind = next((name for mark, name in MARKS.items() if data.startswith(mark)), None)
     if not kind and 0 in data[:2]:
         kind = "utf-16-be" if data[0] == 0 else "utf-16-le"

@@ -14,6 +14,7 @@ import re
 import sys
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import chdir, suppress
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
@@ -81,7 +82,8 @@ class Search:
     def metrics(self, chosen: Mapping[str, float]) -> Metrics:
         """What one run measures."""
         definition = chapters.load(self.chapter).experiment(self.experiment)
-        return finite(run_case(definition, live(self.config(chosen)), self.seed)[1])
+        with chdir("."):  # a law may go elsewhere
+            return finite(run_case(definition, live(self.config(chosen)), self.seed)[1])
 
     def override(self, chosen: Mapping[str, float]) -> str:
         """The words that give the case these parameters; a list is given whole."""
@@ -218,7 +220,7 @@ def run(
     path = results / "tuning" / f"{search.name}-{digest_of([about, search.values])[:10]}.json"
     writable(results)
     path.parent.mkdir(parents=True, exist_ok=True)
-    kept = {row["content"]: row for row in read_json(path)["runs"]} if path.exists() else {}
+    kept = _kept(path)
     rows: list[dict[str, Any]] = []
     with Pool(workers) as pool:
 
@@ -242,6 +244,16 @@ def run(
             if len(points):
                 measure(list(points))
     return _found(search, rows), path
+
+
+def _kept(path: Path) -> dict[str, dict[str, Any]]:
+    """Runs of an earlier search by their content; what is damaged is run again."""
+    with suppress(OSError, ValueError, LookupError, TypeError):
+        rows = {row["content"]: row for row in read_json(path)["runs"]}
+        if all(isinstance(row["value"], float | int | None) and isinstance(row["parameters"], dict)
+               for row in rows.values()):  # fmt: skip
+            return rows
+    return {}
 
 
 def _rounds(search: Search, budget: int, rows: Sequence[Mapping[str, Any]]) -> Iterator[Array]:

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT, Shell
 
-from dexrepro import cli
+from dexrepro.commands import run
 from dexrepro.config import compose_chapter
 
 ONLY_K = [
@@ -138,7 +138,7 @@ def test_a_folder_of_the_user_takes_part_in_a_sweep(shell: Shell, tmp_path: Path
 
 def test_a_folder_of_the_user_is_importable_in_spawned_processes(mine: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "path", [*sys.path])
-    assert cli._config_dir_option(["--config-dir", str(mine), "a=1"]) == (str(mine), ["a=1"])
+    assert run._config_dir_option(["--config-dir", str(mine), "a=1"]) == (str(mine), ["a=1"])
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         assert pool.apply(eval, ("__import__('my_law').Further.__name__",)) == "Further"
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from dexrepro import cli
+from dexrepro.commands.run import run_command
 from dexrepro.errors import InputError
 from dexrepro.plan import plan_chapter
 
@@ -46,7 +47,7 @@ def result(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_wrong_value_names_its_key_and_what_is_allowed(toy: Path, override: str, sentence: str) -> None:
     cut = ["decay.cases={}", "~decay.cases.plain", "~decay.cases.fast", "~decay.cases.halved"]
     with pytest.raises(InputError) as caught:
-        cli.run_command([*(cut if "[]" in override else []), "only=decay", override])
+        run_command([*(cut if "[]" in override else []), "only=decay", override])
     assert sentence in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -69,7 +70,7 @@ def test_a_file_of_the_user_that_is_no_yaml_is_named(toy: Path, content: bytes, 
     (toy / "mine/own").mkdir(parents=True)
     (toy / "mine/own/bad.yaml").write_bytes(content)
     with pytest.raises(InputError) as caught:
-        cli.run_command(["--config-dir", "mine", "+own=bad"])
+        run_command(["--config-dir", "mine", "+own=bad"])
     assert sentence in str(caught.value)
     assert "\n" not in str(caught.value)
 

@@ -8,9 +8,8 @@ import re
 import pytest
 
 from dexrepro import baselines, chapters, study
-from dexrepro.checks import leaves
 from dexrepro.claims import BY_CONSTRUCTION, NOT_EVALUATED, Claim, Predicate, filled, less, robustness
-from dexrepro.config import compose_chapter, resolved_block
+from dexrepro.config import compose_chapter, settings
 from dexrepro.report import verdicts
 
 
@@ -130,11 +129,11 @@ def test_the_numbers_of_a_note_come_from_the_run() -> None:
 
 @pytest.mark.parametrize("number", chapters.numbers())
 def test_every_number_that_a_text_takes_from_a_run_is_stored(number: str) -> None:
-    """In notes of claims, errata, captions and alternative texts; the last two take those of the configuration too."""
+    """In notes of claims, errata, captions and alternative texts, which may name parameters, too."""
     chapter, metrics = chapters.load(number), stored_metrics(number)
     composed = compose_chapter(number)
     for experiment in chapter.experiments:
-        metrics |= dict(leaves({experiment.name: resolved_block(composed, experiment.name)}))
+        metrics |= settings(composed, experiment.name)
     texts = [text for item in chapter.errata for text in (item.summary, item.correction)]
     texts += [text for item in chapter.experiments for f in item.figures.values() for text in (f.caption, f.alt)]
     texts += [claim.note for claim in chapter.claims]

@@ -256,6 +256,28 @@ def test_samples_are_carried_over_a_change_of_code_that_changes_no_number(
     assert read_json(study.run("90", "decay", 4, RESULTS)) == read_json(path)
 
 
+def test_a_case_that_failed_twice_is_carried_over_only_where_it_failed_alike(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def failing(sentence: str) -> None:
+        def run(who: Any, values: Any, seed: int) -> Any:
+            if values.case == "fast":
+                raise ValueError(sentence)
+            return run_case(who, values, seed)
+
+        monkeypatch.setattr(study, "run_case", run)
+
+    keys, run_case = study.content_of, study.run_case
+    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
+    failing("the error grew to 1.25e3 m")
+    study.run("90", "decay", 2, RESULTS, workers=1)
+    monkeypatch.setattr(study, "content_of", lambda who, values: keys(who, values) + "of other code")
+    failing("the matrix is singular")
+    assert study.confirm("90", "decay", RESULTS)[1] == ["fast"]
+    failing("the error grew to 1.26e3 m")
+    assert study.confirm("90", "decay", RESULTS) == (2, [])
+
+
 def test_a_study_never_becomes_smaller(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = study.run("90", "decay", 3, RESULTS, workers=1)
     lines, narrower = (RESULTS / "studies/decay.jsonl").read_text(), study.parameters("90", "decay")

@@ -15,11 +15,19 @@ class FuzzySystem:
 
     sets: for each input the labels with (centre, width) of mu(x) = exp(-(x - centre)^2 / width^2), Eq. (7.30).
     rules: one mapping input -> label a rule; an input that a rule does not name does not matter to it.
+    weights: how much each rule counts [-], 0 or more; None: all alike.
     """
 
-    def __init__(self, sets: Mapping[str, Mapping[str, Sequence[float]]], rules: Sequence[Mapping[str, str]]) -> None:
+    def __init__(
+        self,
+        sets: Mapping[str, Mapping[str, Sequence[float]]],
+        rules: Sequence[Mapping[str, str]],
+        weights: Sequence[float] | None = None,
+    ) -> None:
         self.sets = {name: {label: tuple(pair) for label, pair in labels.items()} for name, labels in sets.items()}
-        self.rules = [dict(rule) for rule in rules]
+        self.rules, self.weights = [dict(rule) for rule in rules], weights
+        if weights is not None and (len(weights) != len(self.rules) or min(weights) < 0 or not any(weights)):
+            raise ValueError(f"weights = {weights} is not allowed: it must be {len(self.rules)} numbers, 0 or more")
         for rule in self.rules:
             for name, label in rule.items():
                 if label not in self.sets.get(name, {}):
@@ -33,6 +41,9 @@ class FuzzySystem:
         values = {name: np.asarray(value, float) for name, value in inputs.items()}
         shape = np.broadcast_shapes(*(value.shape for value in values.values()))
         exponents = np.zeros((*shape, len(self.rules)))
+        if self.weights is not None:
+            with np.errstate(divide="ignore"):  # a rule that does not count
+                exponents += np.log(self.weights)
         for column, rule in enumerate(self.rules):
             for name, label in rule.items():
                 centre, width = self.sets[name][label]
@@ -47,4 +58,4 @@ class FuzzySystem:
     def rescaled(self, name: str, factor: float) -> FuzzySystem:
         """The same rules, the sets of one input stretched by ``factor`` for a task of another size (Sect. 7.3.2)."""
         stretched = {label: (factor * centre, factor * width) for label, (centre, width) in self.sets[name].items()}
-        return FuzzySystem({**self.sets, name: stretched}, self.rules)
+        return FuzzySystem({**self.sets, name: stretched}, self.rules, self.weights)

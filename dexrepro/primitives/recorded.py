@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import glob
 import re
@@ -17,9 +18,12 @@ from dexrepro.arrays import Array
 from dexrepro.text import decoded
 
 LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
-TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-SPELT = {"in": "inch", "inches": "inch", "meters": "m", "metres": "m", "sec": "s", "secs": "s", "seconds": "s",
-         "msec": "ms", "µs": "us", "μs": "us", "usec": "us", "nsec": "ns", "nsecs": "ns"}  # fmt: skip
+TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
+SPELT = {"in": "inch", "inches": "inch", "meters": "m", "metres": "m", "centimeters": "cm", "centimetres": "cm",
+         "millimeters": "mm", "millimetres": "mm", "sec": "s", "secs": "s", "seconds": "s", "minutes": "min",
+         "msec": "ms", "milliseconds": "ms", "µs": "us", "μs": "us", "usec": "us", "microseconds": "us", "nsec": "ns",
+         "nsecs": "ns", "nanoseconds": "ns"}  # fmt: skip
+UNITS = {"", "-", *LENGTHS, *TIMES, *SPELT}
 TIME = {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}
 NO_PLACE = {"orientation", "rotation", "angular", "quaternion", "q", "velocity", "vel", "v", "speed", "acceleration",
             "acc", "force", "torque", "seq"}  # fmt: skip
@@ -34,9 +38,9 @@ PAUSE = 10.0  # times the usual step; where such pauses take a third of the time
 class Format:
     """How a file of recorded positions is written.
 
-    unit: of its lengths, m, cm, mm or inch; time_unit: s, ms, us or ns; None: as its header says. duplicates: "drop"
-    keeps the first of several samples of one instant, "refuse" refuses them. encoding: of a file that is neither UTF-8
-    nor UTF-16, such as cp1252.
+    unit: of its lengths, m, cm, mm or inch; time_unit: s, ms, us, ns or min; None: as its header says. duplicates:
+    "drop" keeps the first of several samples of one instant, "refuse" refuses them. encoding: of a file that is neither
+    UTF-8 nor UTF-16, such as cp1252.
     """
 
     unit: str | None = None
@@ -61,7 +65,7 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
     Raises ValueError with one sentence where the file cannot be used.
     """
     try:
-        lines = decoded(Path(path).expanduser().read_bytes(), style.encoding).splitlines()
+        lines = decoded(Path(path).expanduser().read_bytes(), style.encoding).replace("\u2212", "-").splitlines()
     except OSError as error:
         raise ValueError(f"cannot read '{path}': {error.strerror}") from None
     except ValueError as error:
@@ -108,49 +112,77 @@ class _Table:
         self.lines, self.wanted = lines, wanted
         self.columns: list[int] | None = None
         self.units: list[str] = [""] * len(wanted)
-        first = next((k for k, line in enumerate(lines) if not COMMENT.match(line) and _numbers(line) > 1), len(lines))
+        self.named = 0  # how many columns the header names
+        enough = min(len(wanted), 3)
+        first = next(
+            (k for k, line in enumerate(lines) if not COMMENT.match(line) and _numbers(line) >= enough), len(lines)
+        )
         stripped = [line.strip(" \t,;") for line in lines]
         self.body = [k for k in range(first, len(lines)) if stripped[k] and stripped[k][0] not in "#%/"]
-        self.separator = self._separator()
-        head = [lines[k] for k in range(first) if stripped[k] and not stripped[k].startswith("sep=")]
-        for line in reversed(head):
-            self._name(line)
-        plain = [line for line in head if not COMMENT.match(line)]
+        self.separator = self._separator(lines[first - 1] if first else "")
+        head = [k for k in range(first) if stripped[k] and not stripped[k].startswith("sep=")]
+        plain = [k for k in head if not COMMENT.match(lines[k])]
+        for k in reversed(head):
+            if self.columns is None:
+                self._name(lines[k])
+                if self.columns is not None:  # rows that hold no numbers enough are to be refused, not left out
+                    self.body = [other for other in plain if other > k and _numbers(lines[other])] + self.body
         if plain and self.columns is None:
-            raise ValueError(f"its columns are {', '.join(_fields(plain[-1]))}; they must be {', '.join(wanted)}")
+            raise ValueError(
+                f"its columns are {', '.join(_fields(lines[plain[-1]]))}; they must be {', '.join(wanted)}"
+            )
+        if plain and not self.body:
+            raise ValueError("it has no row of numbers parted by commas, semicolons, tabs or blanks")
+        self._check(first)
 
-    def _separator(self) -> str | None:
-        """What parts the columns, None for blanks: that by which most of the first rows are numbers."""
+    def _check(self, first: int) -> None:
+        """Refuse rows in which columns have been shifted, and numbers that count the columns."""
+        rows = [self._split(self.lines[k], self.separator) for k in self.body[:20]]
+        longer = [k for k, row in enumerate(rows) if self.separator and len(row) > self.named > 0]
+        if longer:
+            line, count = self.body[longer[0]] + 1, len(rows[longer[0]])
+            raise ValueError(f"line {line} has {count} entries, but the header names {self.named} columns")
+        counted = rows and len(rows[0]) > 2 and rows[0] == [str(column) for column in range(len(rows[0]))]
+        if counted and not self.named and any("." in entry for row in rows[1:2] for entry in row):
+            raise ValueError(
+                f"line {first + 1} numbers the columns; delete it, or name them {', '.join(self.wanted)} there"
+            )
 
-        def rows(separator: str | None) -> tuple[int, int]:
+    def _separator(self, above: str) -> str | None:
+        """What parts the columns, None for blanks: that by which most of the first rows are numbers, or else that of
+        the line ``above``."""
+
+        def rows(separator: str | None) -> tuple[int, int, int]:
             parts = [self._split(self.lines[k], separator) for k in self.body[:20]]
-            good = sum(len(row) >= len(self.wanted) and all(map(_is_number, row)) for row in parts)
-            return good, len(parts[0]) if parts else 0
+            good = sum(len(row) >= len(self.wanted) and all(map(_is_number, map(_point, row))) for row in parts)
+            return good, above.count(separator or " "), len(parts[0]) if parts else 0
 
         return max((";", "\t", ",", None), key=rows)
 
     def _split(self, line: str, separator: str | None) -> list[str]:
-        """The entries of a row, without quotes and without empty ones at its end, decimal commas as points."""
+        """The entries of a row, without quotes and without empty ones at its end."""
         row = next(csv.reader([line], delimiter=separator)) if separator else line.split()
         row = [entry.strip().strip('"') for entry in row]
         while row and not row[-1]:
             row.pop()
-        return [entry.replace(",", ".") for entry in row]
+        return row
 
     def _name(self, line: str) -> None:
         """Take the columns, or their units, from a line before the numbers, if it names them."""
         names = _fields(COMMENT.sub("", line))
-        known = {"", "-", *LENGTHS, *TIMES, *SPELT}
-        if self.columns is None and len(names) >= len(self.wanted) and set(map(str.lower, names)) <= known - {"t"}:
-            self.units = names  # a row of units under the names; sorted out with them
-            return
         found = [_column(name, names) for name in self.wanted]
-        if self.columns is None and None not in found:
-            self.columns = [column for column in found if column is not None]
-            under = self.units if len(self.units) == len(names) else [""] * len(names)
-            self.units = [_unit(names[column]) or under[column] for column in self.columns]
-            if len(set(self.units[1:])) > 1:
-                raise ValueError(f"its header gives {', '.join(self.wanted[1:])} in {', '.join(self.units[1:])}")
+        if None in found:
+            units = [entry.strip("[]() ") for entry in names]
+            if not (COMMENT.match(line) or _numbers(line)) or {entry.lower() for entry in units} <= UNITS:
+                self.units = units  # perhaps a row of units under the names
+            return
+        self.columns, self.named = [column for column in found if column is not None], len(names)
+        under = self.units if len(self.units) == len(names) else [""] * len(names)
+        self.units = [_unit(names[column]) or under[column] for column in self.columns]
+        if len(set(self.units[1:])) > 1:
+            raise ValueError(
+                f"its header gives {', '.join(self.wanted[1:])} in {', '.join(self.units[1:])}; give all in one unit"
+            )
 
     def unit(self, style: Format, key: str, allowed: dict[str, float], column: int) -> str | None:
         """The unit of a column by style and header, None where neither tells it."""
@@ -167,14 +199,13 @@ class _Table:
         rows = [self.lines[k] for k in self.body]
         if len(rows) < FEWEST:
             raise ValueError(f"it has {len(rows)} samples; there must be at least {FEWEST}")
-        if self.separator != "," and any("," in row for row in rows):
-            rows = [row.replace(",", ".") for row in rows]
-        try:
-            data = np.loadtxt(
-                rows, delimiter=self.separator, usecols=self.columns, comments=None, quotechar='"', ndmin=2
-            )
-        except ValueError:
-            data = np.empty((0, 0))  # to be read row by row
+        data, text = np.empty((0, 0)), "\n".join(rows) if self.separator != "," else ""
+        if not (re.search(r"\d,\d", text) and re.search(r"\d\.\d", text)):
+            rows = text.replace(",", ".").split("\n") if "," in text else rows
+            with contextlib.suppress(ValueError):  # what cannot be read so is read row by row
+                data = np.loadtxt(
+                    rows, delimiter=self.separator, usecols=self.columns, comments=None, quotechar='"', ndmin=2
+                )
         numbers = np.array(self.body) + 1
         if data.shape[1] != len(self.wanted) or not np.isfinite(data).all():
             data, numbers = self._row_by_row()
@@ -182,7 +213,7 @@ class _Table:
 
     def _row_by_row(self) -> tuple[Array, Array]:
         """The same slowly, with a sentence for the first line that cannot be used; empty rows are left out."""
-        wanted, data, numbers = ", ".join(self.wanted), [], []
+        wanted, data, numbers, marks = ", ".join(self.wanted), [], [], set[str]()
         for k in self.body:
             row = self._split(self.lines[k], self.separator)
             if not row:
@@ -192,9 +223,15 @@ class _Table:
                     f"line {k + 1} has {len(row)} numbers; it must have {wanted}, or a first line must name the columns"
                 )
             chosen = [row[column] if column < len(row) else "" for column in self.columns or range(len(row))]
-            if not all(map(_is_number, chosen)):
-                raise ValueError(f"line {k + 1} holds '{self.lines[k].strip()}': every entry must be a finite number")
-            data.append([float(entry) for entry in chosen])
+            marks |= {mark for entry in chosen for mark in ".," if mark in entry}
+            if not all(map(_is_number, map(_point, chosen))) or len(marks) > 1:
+                must = "every entry must be a finite number"
+                if ":" in chosen[0]:
+                    must = "its time must be a number, not a date or a clock's"
+                elif len(marks) > 1:
+                    must = "numbers must have either . or , and no mark between thousands"
+                raise ValueError(f"line {k + 1} holds '{self.lines[k].strip()}': {must}")
+            data.append([float(_point(entry)) for entry in chosen])
             numbers.append(k + 1)
         return np.array(data).reshape(-1, len(self.wanted)), np.array(numbers)
 
@@ -212,11 +249,10 @@ def _parts(name: str) -> list[str]:
 
 
 def _unit(name: str) -> str:
-    """The unit in a column's name: in brackets, or its last word; empty where there is none."""
-    bracket, words = re.search(r"[\[(]([^\])]*)", name), _parts(name)
-    if bracket:
+    """The unit in a column's name: in brackets, or the last word behind the first that is one; empty where none is."""
+    if bracket := re.search(r"[\[(]([^\])]*)", name):
         return bracket[1].strip()
-    return words[-1] if len(words) > 1 and words[-1] in {*LENGTHS, *TIMES, *SPELT} - TIME else ""
+    return next((word for word in reversed(_parts(name)[1:]) if word in UNITS - TIME), "")
 
 
 def _column(wanted: str, names: Sequence[str]) -> int | None:
@@ -294,6 +330,11 @@ def _numbers(line: str) -> int:
     """How many entries of a line are numbers, whatever parts them."""
     return sum(re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|[-+]?inf", entry) is not None
                for entry in re.split(r'[;,\s"]+', line.lower()))  # fmt: skip
+
+
+def _point(entry: str) -> str:
+    """A number with a decimal point in the place of a comma."""
+    return entry.replace(",", ".")
 
 
 def _is_number(text: str) -> bool:

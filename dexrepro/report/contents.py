@@ -20,7 +20,7 @@ from dexrepro.experiment import Experiment
 from dexrepro.plan import lacking, outdated, plan_chapter
 from dexrepro.provenance import provenance
 from dexrepro.report import equations, explorer, parameters, relations, sources, studies, verdicts, words
-from dexrepro.report.damage import check_result, is_safe, read_table
+from dexrepro.report.damage import check_result, is_safe, read_picture, read_table
 from dexrepro.report.style import file_stem
 from dexrepro.storage import read_json, read_yaml
 
@@ -229,7 +229,7 @@ class Contents:
     def _figure(self, identifier: str, caption: str, alt: str, place: Path, target: Path) -> dict[str, Any]:
         stem = file_stem(identifier)
         copy(place / "figures" / f"{stem}.png", target / f"{stem}.png")
-        _thumbnail(target / f"{stem}.png", target / f"{stem}.webp")
+        _thumbnail(place / "figures" / f"{stem}.png", target / f"{stem}.webp")
         drawing = _light((place / "figures" / f"{stem}.svg").read_text("utf-8"))
         (target / f"{stem}.svg").write_text(drawing, encoding="utf-8")
         return {
@@ -313,8 +313,7 @@ def _film(path: Path, experiment: Experiment, target: Path) -> dict[str, str]:
 
 
 def _thumbnail(source: Path, target: Path) -> None:
-    with Image.open(source) as image:
-        picture = image.convert("RGB")
+    picture = read_picture(source)
     picture.thumbnail((THUMBNAIL, THUMBNAIL), Image.Resampling.LANCZOS)
     picture.save(target, quality=70, method=4)
 

@@ -5,20 +5,24 @@ from __future__ import annotations
 
 import gzip
 import re
+import warnings
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
+from xml.parsers import expat
 
 import yaml
 
 from dexrepro import chapters
+from dexrepro.config import CASE
 from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment
-from dexrepro.storage import read_json, read_text, read_yaml
+from dexrepro.storage import opened, read_json, read_text, read_yaml, require
 
 if TYPE_CHECKING:
     import pandas as pd
+    from PIL import Image
 
 LARGEST = 1 << 28  # bytes of a series when it is unpacked
 BLOCK = 1 << 20  # bytes, of which no line has so many
@@ -36,6 +40,8 @@ def check_result(folder: Path, *names: str, series: bool = False) -> Experiment:
     _require(folder / "run.json", run, RUN)
     for case, entry in run["cases"].items():
         _require(folder / "run.json", entry, ENTRY, f"cases.{case}.")
+        if not re.fullmatch(CASE, case):
+            raise _damaged(folder / "run.json", f"cases: {case[:40]!r} is no name of a case")
     number, name = run["chapter"], run["experiment"]
     known = (
         {e.name: e for e in chapters.load(number).experiments} if number in (*chapters.numbers(), chapters.OWN) else {}
@@ -60,15 +66,17 @@ def check_result(folder: Path, *names: str, series: bool = False) -> Experiment:
                 raise _damaged(folder, f"no series of the case '{case}'")
         for path in sorted((folder / "series").glob("*.gz")):
             check_series(path)
+        for path in sorted((folder / "series").glob("*.png")):
+            read_picture(path)
     return known[name]
 
 
 def check_series(path: Path) -> None:
     try:
-        with gzip.open(path) as file:
+        with opened(path) as packed, gzip.open(packed) as file:
             _check_lines(file)
     except (OSError, EOFError, zlib.error) as error:
-        raise _damaged(path, str(error)) from error
+        raise _damaged(path, error) from error
 
 
 def _check_lines(file: BinaryIO | gzip.GzipFile) -> None:
@@ -85,7 +93,7 @@ def read_table(path: Path) -> pd.DataFrame:
     from dexrepro.recordings import read_frame
 
     try:
-        with open(path, "rb") as file:
+        with opened(path) as file:
             _check_lines(file)
         return read_frame(path)
     except (OSError, ValueError) as error:
@@ -93,26 +101,62 @@ def read_table(path: Path) -> pd.DataFrame:
         raise InputError(f"{path} cannot be used ({reason}); draw it again: dexrepro draw") from error
 
 
-def is_safe(svg: Path) -> bool:
-    """Whether there is a picture that is only a picture: no script, no event, nothing from elsewhere."""
+def read_picture(path: Path) -> Image.Image:
+    """A picture of a result. Raises InputError where it is none, or of more pixels than any screen has."""
+    from PIL import Image
+
     try:
-        text = read_text(svg)
-    except (OSError, ValueError):
+        with opened(path) as file, warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            return Image.open(file).convert("RGB")
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError, Image.DecompressionBombWarning) as error:
+        raise _damaged(path, error) from error
+
+
+SVG = "http://www.w3.org/2000/svg"
+DRAWN = (SVG, *(f"http://{name}" for name in ("creativecommons.org/ns#", "purl.org/dc/elements/1.1/",
+                                              "www.w3.org/1999/02/22-rdf-syntax-ns#")))  # fmt: skip
+SHAPES = re.compile(
+    "svg|g|defs|use|symbol|path|rect|circle|ellipse|line|polyline|polygon|text|tspan|image|clipPath|mask|pattern|"
+    "marker|linearGradient|radialGradient|stop|style|title|desc|metadata"
+)
+
+
+def is_safe(svg: Path) -> bool:
+    """Whether there is a picture that is only a picture: known shapes, nothing that runs, nothing from elsewhere."""
+    parser = expat.ParserCreate(namespace_separator=" ")
+    styles: list[str] = []
+
+    def begin(element: str, attributes: dict[str, str]) -> None:
+        space, _, name = element.rpartition(" ")
+        if space not in DRAWN or (space == SVG and not SHAPES.fullmatch(name)):
+            raise ValueError(f"<{name}>")
+        parser.CharacterDataHandler = styles.append if name == "style" else None
+        for key, value in attributes.items():
+            name = key.rpartition(" ")[2].lower()
+            linked = name == "href" and not re.match(r"#|data:image/(png|jpeg);base64,[\w+/=\s]*$", value)
+            if name.startswith("on") or linked:
+                raise ValueError(f"{name} = {value[:40]}")
+            if name != "href":
+                styles.append(value)
+
+    def refuse(*_: object) -> None:
+        raise ValueError("an entity or a processing instruction")
+
+    parser.StartElementHandler = begin
+    parser.EntityDeclHandler = parser.ProcessingInstructionHandler = refuse
+    try:
+        parser.Parse(read_text(svg).encode(), True)
+    except (OSError, ValueError, expat.ExpatError):
         return False
-    return not re.search(
-        r"<\s*(script|foreignObject|iframe|object|embed|!ENTITY)|\son\w+\s*=|javascript:|href\s*=\s*[\"']?\s*(https?:|//|data:text)",
-        text, re.IGNORECASE,
-    )  # fmt: skip
+    return not re.search(r"url\(\s*[\"']?(?!#)[^\s\"']|@import|javascript:|\\", "".join(styles), re.IGNORECASE)
 
 
-def _require(path: Path, data: Any, kinds: dict[str, Any], where: str = "") -> None:
-    if not isinstance(data, dict):
-        raise _damaged(path, f"{where.rstrip('.') or 'it'} holds no dict")
-    for key, kind in kinds.items():
-        if key not in data:
-            raise _damaged(path, f"it has no '{where}{key}'")
-        if not isinstance(data[key], kind) or isinstance(data[key], bool):
-            raise _damaged(path, f"{where}{key} = {str(data[key])[:40]!r} is of another kind")
+def _require(path: Path, data: Any, kinds: Mapping[str, Any], where: str = "") -> None:
+    try:
+        require(data, kinds, where)
+    except ValueError as error:
+        raise _damaged(path, error) from error
 
 
 def _read(path: Path) -> Any:
@@ -120,9 +164,9 @@ def _read(path: Path) -> Any:
     try:
         return read(path)
     except (OSError, ValueError, yaml.YAMLError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise _damaged(path, str(reason)) from error
+        raise _damaged(path, error) from error
 
 
-def _damaged(path: Path, reason: str) -> InputError:
+def _damaged(path: Path, reason: object) -> InputError:
+    reason = str(getattr(reason, "strerror", None) or reason)
     return InputError(f"{path} cannot be used ({' '.join(reason.split())}); delete the result and run it again")

@@ -28,6 +28,7 @@ from dexrepro.report.damage import check_series
 LONGEST = 4000  # samples of a case; of a longer one every k-th is shown
 SHORTEST = 10
 FRAMES = 240  # instants of a scene
+HIDDEN = 2.5  # m: what lies farther from the middle is not to be seen
 UNITS = {  # of the channels that arms, bodies and objects of the world record as "<name>.<quantity>"
     "position": "rad", "velocity": "rad/s", "torque": "N m", "tip": "m", "force": "N", "sensed_force": "N",
     "length": "m", "slip": "m", "pose": "m, m, m, 1, 1, 1, 1",
@@ -78,7 +79,7 @@ def scene(place: Path, target: Path, experiment: Experiment) -> dict[str, Any] |
     columns = {"time": times.astype(np.float32)}
     columns |= {str(i): column for i, column in enumerate(poses.reshape(len(times), -1).T.astype(np.float32))}
     text, samples, _ = _packed(columns)
-    camera = experiment.film.camera if experiment.film else Camera()
+    camera = experiment.film.camera if experiment.film else _fitted(poses[..., :3].reshape(-1, 3))
     entry = {
         "case": case, "samples": samples, "poses": text, "camera": asdict(camera),
         "solids": [{"kind": item.kind, "size": item.size, "colour": item.colour} for item in seen],
@@ -102,6 +103,16 @@ def _motion(place: Path, experiment: Experiment) -> tuple[str, Array, list[Solid
     return case, times, seen, poses
 
 
+def _fitted(points: Array) -> Camera:
+    """A camera that sees all points (n, 3) [m]; those far from most are hidden things. A plane it sees from above."""
+    middle = np.median(points, axis=0)
+    seen = points[np.abs(points - middle).max(axis=1) < HIDDEN]
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    x, y, z = (low + high) / 2
+    flat = high[2] - low[2] < 0.05 * max(high[:2] - low[:2])
+    return Camera((x, y, z), 0.25 + 1.1 * float(np.linalg.norm(high - low)), *((0.0, -89.0) if flat else (50.0, -30.0)))
+
+
 def unit(channel: str, units: Mapping[str, str]) -> str:
     """A channel's unit, "1" of a number without, "m, N" of components: as declared, or the world's own; else "".
 
@@ -117,7 +128,17 @@ def _first(names: list[str], cases: list[str], film: Film | None) -> dict[str, l
     """What is shown before the reader chooses: the channel of the film, or errors and forces, of at most four cases."""
     wanted = [film.channel] if film and film.channel in names else []
     own = [name for name in names if name.rpartition(".")[0] not in ARMS[:-1]]
-    telling = ("error", "force", "distance", "rcm_distance", "estimate", "lyapunov", "stiffness", "reference")
+    telling = (
+        "error",
+        "force",
+        "contact",
+        "distance",
+        "rcm_distance",
+        "estimate",
+        "lyapunov",
+        "stiffness",
+        "reference",
+    )
     wanted += [name for word in telling for name in own if name.rpartition(".")[2] == word]
     wanted = list(dict.fromkeys([*wanted, *own, *names]))
     shown = cases[:4]

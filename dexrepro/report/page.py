@@ -13,6 +13,7 @@ from typing import Any
 import jinja2
 
 from dexrepro import __version__, chapters, crosscheck, study
+from dexrepro.claims import TIE
 from dexrepro.report import equations, explorer, studies, symbols, verdicts, words
 from dexrepro.report.contents import Contents, in_book_order
 from dexrepro.report.damage import check_result
@@ -40,7 +41,7 @@ def templates() -> jinja2.Environment:
     """What the pages are made of."""
     loader = jinja2.PackageLoader("dexrepro.report", "templates")
     made = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    filters = (words.breakable, words.number, words.short_number, words.percent)
+    filters = (words.breakable, words.number, words.short_number, words.percent, words.prose, words.unit)
     made.filters |= {function.__name__: function for function in filters}
     made.globals |= {"VERDICTS": verdicts.VERDICTS, "MARKS": verdicts.MARKS}
     return made
@@ -85,12 +86,15 @@ class _Report:
             "examples": verdicts.examples(claims),
             "never": verdicts.never_failed(claims),
             "agreeing": agreeing,
+            "tie": TIE,
         }
         self._page("verdicts", here="verdicts", **told, **common)
         self._page("symbols", here="symbols", **common)
         self._page("equations", here="equations", equations=index, **common)
         for number, rows in itertools.groupby(index, lambda row: row["chapter"]):
-            self._page(f"equations{number}", "equations", here="", number=number, equations=list(rows), **common)
+            self._page(
+                f"equations{number}", "equations", here="equations", number=number, equations=list(rows), **common
+            )
         self._write_sources(common["provenance"])
         self._write_assets(book)
 

@@ -16,6 +16,7 @@ from dexrepro.errors import InputError, nearest
 from dexrepro.plan import matches
 from dexrepro.provenance import provenance
 from dexrepro.report import equations, parameters, relations, sources, verdicts
+from dexrepro.report.damage import check_result
 from dexrepro.report.listing import chapter_listing
 from dexrepro.storage import read_json
 
@@ -110,6 +111,7 @@ def _metrics(number: str, name: str, results: Path) -> tuple[str, dict[str, Any]
     """The metrics of an experiment's result here, else those stored; and which they are."""
     folder = results / f"chapter{number}" / name
     if (folder / "metrics.json").exists():
+        check_result(folder, "metrics.json")
         return f"as run here, {folder}", read_json(folder / "metrics.json")
     entries = baselines.Baseline.of(number, name).metrics
     return "as stored with dexrepro", {key: entry["value"] for key, entry in entries.items()}

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import gzip
-import json
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +14,7 @@ from dexrepro.baselines import baseline_dir
 from dexrepro.claims import Claim
 from dexrepro.report import style, verdicts
 from dexrepro.runner import flat
+from dexrepro.study import read_samples
 
 ROW = 0.2  # inch a claim
 EDGES = (0.62, 0.42)  # inch above and below the rows
@@ -83,12 +81,10 @@ def samples(study: Mapping[str, Any], results: Path) -> list[dict[str, Any]]:
     name = study["experiment"]
     for path in (results / "studies" / f"{name}.jsonl", baseline_dir() / "study" / f"{name}.jsonl.gz"):
         if path.exists():
-            with suppress(ValueError, OSError, LookupError):  # a line may have been cut short
-                text = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
-                entries = [json.loads(line) for line in text.splitlines()]
-                if len(entries) == study["samples"]:
-                    claims = chapters.load(study["chapter"]).claims_of(name)
-                    return [_sample(name, claims, entry) for entry in entries]
+            entries = list(read_samples(path))
+            if len(entries) == study["samples"]:
+                claims = chapters.load(study["chapter"]).claims_of(name)
+                return [_sample(name, claims, entry) for entry in entries]
     return []
 
 

@@ -10,9 +10,9 @@ _LOWER = (
     "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu "
     "nu xi omicron pi rho varsigma sigma tau upsilon phi chi psi omega"
 )
-_GREEK = {name: chr(0x3B1 + index) for index, name in enumerate(_LOWER.split())}
-_GREEK |= {name.capitalize(): letter.upper() for name, letter in _GREEK.items() if name != "varsigma"}
-_GREEK |= {"varpi": "\u03d6", "infty": "\u221e"}
+GREEK = {name: chr(0x3B1 + index) for index, name in enumerate(_LOWER.split())}
+GREEK |= {name.capitalize(): letter.upper() for name, letter in GREEK.items() if name != "varsigma"}
+GREEK |= {"varpi": "\u03d6", "infty": "\u221e"}
 _ACCENTS = {"hat": "\u0302", "bar": "\u0304", "under": "\u0332"}
 _TOKEN = re.compile(
     r"(?P<script>[_^])(?:\{(?P<group>[^}]*)\}|(?P<word>\w+|\([^)]*\)))|(?P<letters>[A-Za-z]+)|(?P<other>.)"
@@ -42,12 +42,12 @@ def text(symbol: str) -> str:
 
 def greek(phrase: str) -> str:
     """A phrase whose words "alpha", "rho", ... are letters; "mu" and "psi" within other words stay."""
-    return re.sub(r"(?<![\w.])[A-Za-z]{2,7}(?![A-Za-z.])", lambda match: _GREEK.get(match[0], match[0]), phrase)
+    return re.sub(r"(?<![\w.])[A-Za-z]{2,7}(?![A-Za-z.])", lambda match: GREEK.get(match[0], match[0]), phrase)
 
 
 def _letter(word: str) -> str:
-    if word in _GREEK:
-        return _GREEK[word]
+    if word in GREEK:
+        return GREEK[word]
     match = _ACCENTED.match(word)
     base, accent = (match["base"], match["accent"] or "") if match else (word, "")
-    return _GREEK.get(base, base) + _ACCENTS.get(accent, "")
+    return GREEK.get(base, base) + _ACCENTS.get(accent, "")

@@ -6,7 +6,7 @@ import json
 import re
 from typing import TYPE_CHECKING, Any
 
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from dexrepro.report import symbols
 
@@ -17,6 +17,26 @@ if TYPE_CHECKING:  # its import takes longer than a run that has nothing to do
 def breakable(name: str) -> Markup:
     """A dotted name that may be broken between its parts, and only there."""
     return Markup("<wbr>").join(re.split(r"(?<=[._=,/-])(?=\w)", name))
+
+
+_BASE = rf"(?<![\w.\\/'-])(?:{'|'.join(symbols.GREEK)}|[A-Za-z]{{1,2}}|[A-Za-z](?:hat|bar))"
+_BELOW, _ABOVE = r"_(?:\{[^}]*\}|\w{1,3}(?:,\w+)?)", r"\^(?:\w{1,3}|\([^)]*\))"
+_SYMBOL = re.compile(rf"(?:{_BASE}(?:{_BELOW}(?:{_ABOVE})?|{_ABOVE})|(?<=[|)\]]){_ABOVE})(?!\w|=|\.\w)")
+
+
+def prose(text: str) -> Markup:
+    """A sentence in which symbols as ``K_1`` or ``x^T`` are set as the book has them."""
+    parts, end = [], 0
+    for match in _SYMBOL.finditer(text):
+        symbol = re.sub(r"_(\w+,\w+)", r"_{\1}", match[0])
+        parts += [escape(text[end : match.start()]), symbols.html(symbol)]
+        end = match.end()
+    return Markup("").join([*parts, escape(text[end:])])
+
+
+def unit(text: str) -> Markup:
+    """A unit with its exponents raised: "kg m^2"."""
+    return Markup(re.sub(r"\^(-?[\d.]+|\w)", r"<sup>\1</sup>", str(escape(text))))
 
 
 def column_kind(column: pd.Series[Any]) -> str:

@@ -65,10 +65,15 @@ def _parsed(path: Path) -> xml.Element:
     declared = re.match(rb"\s*<\?xml[^>]*encoding=[\"']([\w.-]+)", data)
     eight_bits = declared and not declared[1].lower().startswith(b"utf")
     text = decoded(data, declared[1].decode() if declared and eight_bits else None)
-    builder, parser = xml.TreeBuilder(), expat.ParserCreate("utf-8")
-    parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
+    text = re.sub(r"<\?xml\s.*?\?>", "", text, count=1, flags=re.DOTALL)  # it may stand behind a comment
+    builder, parser = xml.TreeBuilder(element_factory=_Node), expat.ParserCreate("utf-8")
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        builder.start(tag, attributes).line = parser.CurrentLineNumber  # type: ignore[attr-defined]
+
+    parser.StartElementHandler, parser.EndElementHandler = start, builder.end
     try:
-        parser.Parse(text.strip().encode(), True)
+        parser.Parse(text.rstrip().encode(), True)
     except expat.ExpatError as error:
         raise ValueError(f"it is no XML file: {error}") from None
     robot = builder.close()
@@ -82,12 +87,19 @@ def _parsed(path: Path) -> xml.Element:
     return robot
 
 
+class _Node(xml.Element):
+    """An element that knows its ``line`` in the file."""
+
+    line = 0
+
+
 class _Tree:
     """Links by name and the joint that leads into each; ``mended``: what was not as it should be, as half sentences."""
 
     def __init__(self, robot: xml.Element, path: Path, packages: Mapping[str, str]) -> None:
         self.links = _by_name(robot, "link")
         self.into: dict[str, xml.Element] = {}
+        self.children: dict[str, list[str]] = {name: [] for name in self.links}
         self.path, self.packages, self.mended = path, packages, list[str]()
         for name, folder in packages.items():
             if not Path(folder).expanduser().is_dir():
@@ -98,6 +110,7 @@ class _Tree:
                     raise ValueError(f"joint '{name}' has no {role} link that is in the file")
             if (other := self.into.setdefault(_link(node, "child"), node)) is not node:
                 raise ValueError(f"link '{_link(node, 'child')}' hangs on two joints, '{_name(other)}' and '{name}'")
+            self.children[_link(node, "parent")].append(_link(node, "child"))
 
     def arm(self, end: str, root: str | None, base: Sequence[float]) -> Arm:
         for name in (end, root):
@@ -108,7 +121,10 @@ class _Tree:
                 )
                 raise ValueError(f"it has no link '{name}'; {there}")
         above = self.above(end)
-        root = root or (_link(above[0], "parent") if above else end)
+        first = _link(above[0], "parent") if above else end
+        if root is None and (stray := [name for name in self.links if name not in self.into and name != first]):
+            self.mended.append(f"link '{stray[0]}' hangs on no joint; only what hangs on '{first}' is read")
+        root = root or first
         if len(self.above(root)) > len(above) or self.above(root) != above[: len(self.above(root))]:
             raise ValueError(f"link '{end}' does not hang on the link '{root}'")
         chain = [node for node in above[len(self.above(root)) :] if node.get("type") != "fixed"]
@@ -130,7 +146,7 @@ class _Tree:
         last, axis = bodies[-1], np.array(joints[-1].axis)
         if not axis @ last.inertia_matrix @ axis + last.mass * np.sum(np.cross(axis, last.com) ** 2) > 0:
             raise ValueError(f"link '{last.name}' has no inertia about joint '{joints[-1].name}'; give it one")
-        stand = [shape for part in self.carried(root, set(moving)) for shape in self.shapes(part, root)]
+        stand = [shape for part, frame in self.carried(root, set(moving)) for shape in self.shapes(part, frame)]
         x, y, z, *turn = base
         placed = Pose((x, y, z), tuple(turn) or (0.0, 0.0, 0.0))  # type: ignore[arg-type]
         tip = Pose.of(self.between(moving[-1], end))
@@ -150,8 +166,10 @@ class _Tree:
                     f"free; end the arm before it, at {_link(node, 'parent')}"
                 )
         names = set(map(_name, chain))
-        for part in [part for name in moving for part in self.carried(name, moving)]:
-            mimic = self.into[part].find("mimic")
+        for part in [part for name in moving for part, _ in self.carried(name, moving)]:
+            mimic, kind = self.into[part].find("mimic"), self.into[part].get("type")
+            if part not in moving and kind in ("floating", "planar"):
+                self.mended.append(f"joint '{_name(self.into[part])}' off the chain is {kind} and taken to be fixed")
             if mimic is not None and part not in moving and mimic.get("joint") in names:
                 raise ValueError(
                     f"joint '{_name(self.into[part])}' off the chain follows joint '{mimic.get('joint')}' of the arm "
@@ -172,8 +190,13 @@ class _Tree:
         """Transform (4, 4) of a link in the frame of an ancestor, the joints between at 0."""
         result = np.eye(4)
         for node in self.above(name)[len(self.above(ancestor)) :]:
-            result = result @ _pose(node).matrix @ self._still(node)
+            result = self._behind(node, result)
         return result
+
+    def _behind(self, node: xml.Element, frame: Array) -> Array:
+        """Transform (4, 4) of a joint's child from that of its parent, the joint at 0."""
+        behind: Array = frame @ _pose(node).matrix @ self._still(node)
+        return behind
 
     def _still(self, node: xml.Element) -> Array:
         """What a joint off the chain adds (4, 4): nothing at 0, or the offset of one that follows another (mimic)."""
@@ -185,21 +208,23 @@ class _Tree:
             result[:3, :3] = Rotation.from_rotvec(offset * _axis(node)).as_matrix()
         return result
 
-    def carried(self, name: str, moving: set[str]) -> Iterator[str]:
-        """A link and those that move with it."""
-        yield name
-        for child, node in self.into.items():
-            if child not in moving and _link(node, "parent") == name:
-                yield from self.carried(child, moving)
+    def carried(self, name: str, moving: set[str]) -> Iterator[tuple[str, Array]]:
+        """A link and those that move with it, each with its transform (4, 4) in the frame of the first."""
+        waiting = [(name, np.eye(4))]
+        while waiting:
+            part, frame = waiting.pop()
+            yield part, frame
+            still = [child for child in self.children[part] if child not in moving]
+            waiting += [(child, self._behind(self.into[child], frame)) for child in reversed(still)]
 
     def body(self, name: str, moving: set[str], tip: Array) -> tuple[Link, float]:
         """One rigid body of a moving link and all it carries, about their common centre of mass, and by which share
         its inertia was none of a rigid body."""
         parts, shapes = [], list[Shape]()
-        for part in self.carried(name, moving):
-            shapes += self.shapes(part, name)
+        for part, frame in self.carried(name, moving):
+            shapes += self.shapes(part, frame)
             if (inertial := self.links[part].find("inertial")) is not None:
-                parts.append((part, *_inertial(inertial, self.between(name, part))))
+                parts.append((part, *_inertial(inertial, frame)))
                 if parts[-1][1] < 0:
                     raise ValueError(f"link '{part}' has the mass {parts[-1][1]:g} kg; it must not be negative")
         mass = sum(m for _, m, _, _ in parts)
@@ -225,13 +250,16 @@ class _Tree:
         (xx, xy, xz), (_, yy, yz), (_, _, zz) = rigid.tolist()
         return Link(name, float(mass), tuple(np.asarray(com).tolist()), (xx, xy, xz, yy, yz, zz), tuple(shapes)), share
 
-    def shapes(self, part: str, carrier: str) -> list[Shape]:
-        """Collision shapes, or else visual ones that touch nothing, and visual meshes, in the frame of the carrier."""
-        link, frame = self.links[part], Pose.of(self.between(carrier, part))
+    def shapes(self, part: str, at: Array) -> list[Shape]:
+        """Collision shapes, or else visual ones that touch nothing, and visual meshes, of a link that stands ``at``
+        (4, 4) in the frame of what carries it."""
+        link = self.links[part]
         solid, visual = link.findall("collision"), link.findall("visual")
+        if not solid and not visual:
+            return []
         colour = _floats(link.find("visual/material/color"), "rgba", "")
         look = colour if len(colour) == 4 else GREY
-        found = []
+        frame, found = Pose.of(at), list[Shape]()
         for node in solid or visual:
             geometry = node.find("geometry")
             for kind, names in {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length")}.items():
@@ -243,7 +271,9 @@ class _Tree:
         for node in visual:
             mesh = node.find("geometry/mesh")
             if mesh is not None and (file := self._mesh(mesh.get("filename", ""))):
-                scale = tuple(map(float, mesh.get("scale", "1 1 1").split()[:3]))  # some files have a fourth number
+                scale = _floats(mesh, "scale", "")[:3] or (1.0, 1.0, 1.0)  # some files have a fourth number
+                if len(scale) < 3 or not all(scale):
+                    raise ValueError(f"{_place(mesh, 'scale')} must hold three numbers, none of them 0")
                 found.append(Shape("mesh", scale, frame @ _pose(node), look, collides=False, mesh=str(file)))
         return found
 
@@ -273,6 +303,8 @@ class _Tree:
                 raise ValueError(f"joint '{name}' has the limits {lower:g} to {upper:g}; it cannot move")
             self.mended.append(f"joint '{name}' has no limits or 0 to 0, and is taken to be without")
             bounded = False
+        if bounded and 50 < max(-lower, upper) <= 360:
+            self.mended.append(f"joint '{name}' has the limits {lower:g} to {upper:g}; they are in rad, not in degrees")
         bounds = (lower, upper) if bounded else (-math.inf, math.inf)
         return Joint(name, origin, tuple(_axis(node).tolist()), *bounds, effort or math.inf, velocity or math.inf)
 
@@ -297,17 +329,24 @@ def _link(joint: xml.Element, role: str) -> str:
     return "" if node is None else node.get("link", "")
 
 
+def _place(node: xml.Element | None, attribute: str) -> str:
+    """An attribute as it stands in the file, for a sentence."""
+    if node is None:
+        return attribute
+    return f'line {getattr(node, "line", 0)}: <{node.tag} {attribute}="{node.get(attribute, "")}">'
+
+
 def _floats(node: xml.Element | None, attribute: str, default: str) -> tuple[float, ...]:
     text = default if node is None else node.get(attribute, default)
     try:
         values = tuple(map(float, text.split()))
-        if any(map(math.isnan, values)) or len(values) != len(default.split() or values):
+        bad = math.isnan if node is None or node.tag == "limit" else lambda value: not math.isfinite(value)
+        if any(map(bad, values)) or len(values) != len(default.split() or values):
             raise ValueError
     except ValueError:
-        tag = "" if node is None else node.tag
-        raise ValueError(
-            f'<{tag} {attribute}="{text}"> does not hold {len(default.split()) or "finite"} numbers'
-        ) from None
+        count = len(default.split())
+        wanted = f"{count} numbers parted by blanks" if count > 1 else "one number" if count else "numbers"
+        raise ValueError(f"{_place(node, attribute)} does not hold {wanted}, such as 0.25") from None
     return values
 
 

@@ -11,7 +11,8 @@ import pytest
 from dexrepro.case import generator, live
 from dexrepro.chapters.own.paths import leader_path
 from dexrepro.chapters.own.scene import experiment as scene
-from dexrepro.cli import main, run_overrides
+from dexrepro.cli import main
+from dexrepro.commands.run import run_overrides
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import Command
 from dexrepro.errors import InputError

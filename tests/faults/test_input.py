@@ -49,13 +49,49 @@ HUGE = "9" * 400
         ("decay.law._target_=os.system", "cannot build the objects"),
         ("decay.law._target_=nosuch.Law", "cannot build the objects"),
         ("decay.law._target_=5", "decay"),
+        ("+decay.rate.z=1", "decay.rate = {'z': 1} is not allowed: it must be a number"),
+        ("decay.start=true", "decay.start = True is not allowed: it must be a number"),
+        ("decay.start=[1,2]", "differs from the book in: start=[1, 2] (book: 1.0)"),
+        ("decay.start=null", "differs from the book in: start=None (book: 1.0)"),
+        ("~decay.start", "no configuration key 'start'"),
+        ("decay.start=${.start}", "decay"),
+        ("decay.start=${oc.env:NO_SUCH_VARIABLE}", "decay.start"),
+        ("decay.start=" + "[" * 400 + "]" * 400, "nested too deeply"),
+        ("decay.start=" + "1" * 5000, "must be a number"),
+        ("decay.start=nan", "must be a finite number"),
+        ("decay.duration=-1", "decay.duration = -1 is not allowed: it must be greater than 0"),
+        ("decay.step=", "decay.step = '' is not allowed: it must be a number"),
+        ("+=", "'+=' is not an override of the form key=value"),
+        ("+", "'+' is not an override of the form key=value"),
+        ("decay.cases=[]", "decay.cases"),
+        ("~decay.cases", "KeyError: 'plain'"),
+        ("case=[]", "case = [] is not allowed: it must name a case"),
+        ("workers=0", "workers = 0 is not allowed"),
+        ("case_timeout=abc", "case_timeout = abc is not allowed"),
+        ("seed=-1", "seed = -1 is not allowed"),
+        ("results=~nobody-of-this-name/x", "it names no folder"),
+        ("results=\0", "it names no folder"),
+        ("results=" + "a" * 300, "File name too long"),
+        ("results=loop/x", "Too many levels of symbolic links"),
+        ("results=file", "results = file is not allowed"),
     ],
 )
 def test_what_cannot_be_run_says_so(toy: Path, command: Command, words: str, sentence: str) -> None:
+    (toy / "loop").symlink_to("loop")
+    (toy / "file").touch()
     status, said = command(f"run only=decay workers=1 {words}")
     assert status in (1, 2)
     assert sentence in " ".join(said.split())
     assert not list(toy.glob("results/*/decay*/metrics.json"))
+
+
+@pytest.mark.parametrize("words", ["+decay.cases.mine=null", "~decay.cases.fast", "+decay.cases.mine.start=1.0"])
+def test_another_set_of_cases_does_not_take_the_place_of_the_books_result(
+    toy_result: Path, command: Command, words: str
+) -> None:
+    before = whole(toy_result)
+    command(f"run only=decay workers=1 {words}")
+    assert whole(toy_result) == before
 
 
 @pytest.mark.parametrize(
@@ -66,6 +102,13 @@ def test_what_cannot_be_run_says_so(toy: Path, command: Command, words: str, sen
         ("check figure=90.11", "unknown figure '90.11'"),
         ("draw figure=T90.7", "unknown figure 'T90.7'"),
         ("study only=needs_more samples=1", "there is no claim that a study could test"),
+        ("study only=decay samples=0", "samples = 0 is not allowed"),
+        ("study only=decay hours=-1", "hours = -1 is not allowed"),
+        ("study only=decay jobs=0 hydra/launcher=basic", "jobs = 0 is not allowed"),
+        ("tune case=decay.plain minimise=final budget=-3", "budget = -3 is not allowed"),
+        ("compare laws=~nobody-of-this-name case=decay.plain minimise=final", "laws = '~nobody-of-this-name' is not"),
+        ("show nosuch", "nosuch"),
+        ("report results=loop", "results = loop is not allowed"),
         ("render nowhere", "nowhere holds no result"),
         ("render only=decay", "has no scene to render"),
         ("diff results/chapter90/decay nowhere", "nowhere holds no result"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import fcntl
 import os
 import random
 import shutil
@@ -20,7 +22,7 @@ from dexrepro.plan import plan_chapter
 from dexrepro.pool import Failure, Pool
 from dexrepro.progress import Silent
 from dexrepro.runner import run_plans
-from dexrepro.storage import read_json, remove_leftovers
+from dexrepro.storage import claimed, read_json, remove_leftovers
 
 pytestmark = pytest.mark.usefixtures("bounded")
 HALVED = "+decay.cases.halved.fail="
@@ -89,6 +91,17 @@ def test_a_law_that_never_returns_is_ended_where_that_is_asked_for(toy: Path, co
     assert status == 1
     assert "decay.halved failed: it took longer than case_timeout = 1.5 s" in said
     assert in_cache(toy) == {"plain", "fast", "gain1", "gain2"}
+
+
+@pytest.mark.parametrize("fault", ["elsewhere", "delete", "say", "mute", "mask"])
+def test_what_a_law_does_to_its_process_or_to_the_results_spoils_none(toy: Path, command: Command, fault: str) -> None:
+    """It changes the folder, deletes the results, prints what is no letter, closes what is said, withdraws rights."""
+    status, said = command(f"run only=decay workers=1 {HALVED}{fault}")
+    assert status == 0, said
+    (result,) = toy.glob("results/runs/[!.]*")
+    assert len(read_json(result / "metrics.json")) > 20
+    assert in_cache(toy) == {"plain", "fast", "halved", "gain1", "gain2"}
+    assert not Path("/results/.cache/decay").exists()
 
 
 def square(number: int) -> int:
@@ -223,6 +236,55 @@ def test_a_result_that_was_set_aside_comes_back(toy: Path, toy_result: Path, com
     remove_leftovers(toy_result.parent)
     assert whole(toy_result) == kept
     assert command("check")[0] in (0, 1)
+
+
+APART = ["unshare", "--map-root-user", "--pid", "--fork", "--kill-child"]
+CONTAINER = """
+import errno, fcntl, time
+from pathlib import Path
+from dexrepro.storage import claimed, whole_folder
+
+def none(*_):
+    raise OSError(errno.ENOSYS, "no locks")
+
+if not {flock}:
+    fcntl.flock = none
+with claimed(Path("results"), "case"), whole_folder(Path("results/mine")) as folder:
+    (folder / "half").touch()
+    print(folder, flush=True)
+    time.sleep(60)
+"""
+
+
+def no_locks(*_: object) -> None:
+    raise OSError(errno.ENOSYS, "no locks")
+
+
+@pytest.mark.parametrize("flock", [True, False])
+def test_the_work_of_another_container_of_the_same_host_name_is_no_leftover(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, flock: bool
+) -> None:
+    """Its processes are numbered anew; also where the file system has no locks, and files say who holds them."""
+    if shutil.which("unshare") is None or subprocess.run([*APART, "true"], stderr=subprocess.DEVNULL).returncode:
+        pytest.skip("no processes numbered apart can be started here")
+    monkeypatch.chdir(tmp_path)
+    Path("results").mkdir()
+    if not flock:
+        monkeypatch.setattr(fcntl, "flock", no_locks)
+    line = [*APART, sys.executable, "-W", "ignore", "-c", CONTAINER.format(flock=flock)]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with subprocess.Popen(line, env=environment, stdout=subprocess.PIPE, text=True) as other:
+        assert other.stdout
+        folder = Path(other.stdout.readline().strip())
+        remove_leftovers(Path("results"))
+        assert (folder / "half").exists()
+        with claimed(Path("results"), "case", wait=False) as mine:
+            assert not mine
+        other.kill()
+        other.stdout.read()  # until all of its processes are gone
+    if flock:
+        remove_leftovers(Path("results"))
+        assert not list(Path("results").glob(".*-*"))
 
 
 def test_two_commands_at_once_write_one_whole_result(toy: Path) -> None:

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import gzip
 import json
+import os
+import random
 import resource
 import shutil
 import time
+import zlib
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from conftest import Command
 
 from dexrepro import baselines, study
+from dexrepro.errors import InputError
+from dexrepro.report.damage import is_safe
 from dexrepro.storage import read_json, write_json
 
 pytestmark = pytest.mark.usefixtures("bounded")
@@ -43,6 +49,14 @@ def flipped(name: str) -> Damage:
         (folder / name).write_bytes(content)
 
     return flip
+
+
+def pipe(name: str) -> Damage:
+    return lambda folder: ((folder / name).unlink(), os.mkfifo(folder / name))
+
+
+def link_to_itself(name: str) -> Damage:
+    return lambda folder: ((folder / name).unlink(), (folder / name).symlink_to(Path(name).name))
 
 
 def changed(name: str, change: Callable[[dict], object]) -> Damage:
@@ -124,6 +138,16 @@ def test_a_result_that_is_not_whole_is_assembled_again(toy_result: Path, command
 BOMB = "a: &a [x, x, x, x, x, x, x, x, x]\n" + "".join(
     f"{new}: &{new} [{', '.join(['*' + old] * 9)}]\n" for old, new in zip("abcdefghijk", "bcdefghijkl", strict=True)
 )
+
+
+def chunk(kind: bytes, data: bytes) -> bytes:
+    return len(data).to_bytes(4) + kind + data + zlib.crc32(kind + data).to_bytes(4)
+
+
+SIZE = (60_000).to_bytes(4) * 2 + bytes((8, 2, 0, 0, 0))
+PNG_BOMB = (
+    b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", SIZE) + chunk(b"IDAT", zlib.compress(b"\0" * 999)) + chunk(b"IEND", b"")
+)
 DAMAGE: dict[str, tuple[Damage, str, str]] = {
     "run empty": (text("run.json", ""), "check", "run.json cannot be used"),
     "run a number": (text("run.json", "5"), "report", "run.json cannot be used"),
@@ -152,6 +176,17 @@ DAMAGE: dict[str, tuple[Damage, str, str]] = {
     "table cut": (text("tables/T90.1.csv", '"a'), "check", "T90.1.csv cannot be used"),
     "table binary": (text("tables/T90.1.csv", b"\xff\x00\xfe"), "check", "T90.1.csv cannot be used"),
     "table empty": (text("tables/T90.1.csv", ""), "report", "T90.1.csv cannot be used"),
+    "metrics a pipe": (pipe("metrics.json"), "show C90.01", "metrics.json cannot be used (it is no file)"),
+    "metrics a loop": (link_to_itself("metrics.json"), "check", "metrics.json cannot be used (Too many levels"),
+    "metrics of NUL": (text("metrics.json", b"\0" * 99), "show 90.10", "metrics.json cannot be used"),
+    "a series a pipe": (pipe("series/fast.csv.gz"), "diff {0} {0}", "fast.csv.gz cannot be used (it is no file)"),
+    "a picture a pipe": (pipe("figures/fig_90_10.png"), "report", "fig_90_10.png cannot be used (it is no file)"),
+    "a picture cut": (short("figures/fig_90_10.png", 900), "report", "figures/fig_90_10.png cannot be used"),
+    "a picture a bomb": (text("figures/fig_90_10.png", PNG_BOMB), "report", "decay/figures/fig_90_10.png"),
+    "a case elsewhere": (changed("run.json", lambda d: d["cases"].update({"../../x": d["cases"]["fast"]})), "draw",
+                         "'../../x' is no name of a case"),
+    "a case of HTML": (changed("run.json", lambda d: d["cases"].update({"<b>": d["cases"]["fast"]})), "report",
+                       "'<b>' is no name of a case"),
     "figure no SVG": (text("figures/fig_90_10.svg", b"\xff\xd8\x00"), "report", ""),
 }  # fmt: skip
 
@@ -161,7 +196,7 @@ def test_damage_is_named(toy_result: Path, command: Command, kind: str) -> None:
     damage, words, sentence = DAMAGE[kind]
     damage(toy_result)
     left = sorted(toy_result.rglob("*"))
-    status, said = command(words)
+    status, said = command(words.format(RESULT))
     assert sentence in " ".join(said.split()), said
     assert status in ((1, 2) if sentence else (0,))
     assert sorted(toy_result.rglob("*")) == left
@@ -217,6 +252,19 @@ def test_a_file_that_is_far_too_large_is_refused(toy_result: Path, command: Comm
         '<a href="javascript:alert(1)"><text>x</text></a>',
         "<foreignObject><iframe src='https://example.org'/></foreignObject>",
         '<image href="https://example.org/x.png"/>',
+        '<s:script xmlns:s="http://www.w3.org/2000/svg">alert(1)</s:script>',
+        '<script xmlns="http://www.w3.org/1999/xhtml">alert(1)</script>',
+        '<a href="java&#115;cript:alert(1)"><text>x</text></a>',
+        '<use href="data:image/svg+xml;base64,PHN2Zy8+#x"/>',
+        '<image xmlns:l="http://www.w3.org/1999/xlink" l:href="file:///etc/passwd"/>',
+        '<set attributeName="onload" to="alert(1)"/>',
+        '<animate attributeName="href" values="javascript:alert(1)"/>',
+        "<style>@import 'https://example.org/x.css';</style>",
+        '<rect style="fill: u\\72l(https://example.org/x)"/>',
+        '<rect fill="url(https://example.org/x#y)"/>',
+        '<rect\nOnClick = "alert(1)"/>',
+        "<?xml-stylesheet href='https://example.org/x.css'?>",
+        "<g>",
     ],
 )
 def test_a_received_picture_with_code_in_it_is_not_shown(toy_result: Path, command: Command, inside: str) -> None:
@@ -227,6 +275,68 @@ def test_a_received_picture_with_code_in_it_is_not_shown(toy_result: Path, comma
     assert "fig_90_10.svg" not in Path("results/report/chapter90.html").read_text()
 
 
+def test_a_picture_with_an_entity_is_not_shown(toy_result: Path) -> None:
+    path = toy_result / "figures/fig_90_10.svg"
+    assert is_safe(path)
+    text = path.read_text()
+    path.write_text(
+        text.replace(text[text.index("<!DOCTYPE") : text.index("<svg")], '<!DOCTYPE svg [<!ENTITY a "b">]>')
+    )
+    assert not is_safe(path)
+    path.write_bytes(text.encode("utf-16"))
+    assert not is_safe(path)
+
+
+HTML = "</script><img src=x onerror=alert(1)>"
+
+
+def test_what_a_received_result_says_is_text_on_the_page(toy_result: Path, command: Command) -> None:
+    changed("claims.json", lambda d: [d[0].update({key: HTML for key in ("statement", "note", "where", "figure")})])(
+        toy_result
+    )
+    changed("run.json", lambda d: d.update(revision=HTML, machine=HTML, python=HTML, differs=[HTML]))(toy_result)
+    text("tables/T90.1.csv", f"case,{HTML}\n{HTML},1\n")(toy_result)
+    shutil.copytree(toy_result, toy_result.parents[1] / "runs/decay-0")
+    assert command("report")[0] == 0
+    pages = [path.read_text("utf-8") for path in Path("results/report").rglob("*") if path.suffix in (".html", ".js")]
+    assert any("&lt;img src=x onerror" in page for page in pages)
+    assert not any(HTML in page for page in pages)
+
+
+WORDS = ("check", "report", "draw", "diff {0} {0}", "show decay", "render {0}", "run only=decay workers=1",
+         "study only=decay samples=1 workers=1")  # fmt: skip
+
+
+def other_value(data: Any, rng: random.Random) -> bytes:
+    """Data in which one value, at whatever depth, is of another kind."""
+    node = data
+    while True:
+        key = rng.choice(list(node) if isinstance(node, dict) else range(len(node)))
+        if not isinstance(node[key], dict | list) or not node[key] or rng.random() < 0.2:
+            break
+        node = node[key]
+    node[key] = rng.choice([None, 5, "x", [], {}, True, -1, 1e308, "../../x", [[]], {"a": 1}])
+    return json.dumps(data).encode()
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_random_damage_gives_a_sentence_or_nothing(toy_result: Path, command: Command, number: int) -> None:
+    rng = random.Random(number)
+    whole = {path: path.read_bytes() for path in toy_result.rglob("*") if path.is_file()}
+    for path in rng.sample(sorted(whole), 2):
+        content = bytearray(whole[path])
+        if path.suffix == ".json" and rng.random() < 0.7:
+            content = other_value(json.loads(content), rng)
+        elif rng.random() < 0.5:
+            del content[rng.randrange(len(content)) :]
+        else:
+            for _ in range(rng.randrange(1, 9)):
+                content[rng.randrange(len(content))] ^= 1 << rng.randrange(8)
+        path.write_bytes(content)
+    status, _ = command(rng.choice(WORDS).format(RESULT))
+    assert status in (0, 1, 2)
+
+
 # ---------------------------------------------------------------------------------- baselines, studies, configuration
 
 BASELINES = {
@@ -234,6 +344,8 @@ BASELINES = {
     "a list": "[]",
     "cut short": '{"metrics": {"decay.plain.final": {"value"',
     "other keys": '{"numbers": {}}',
+    "claims a list": '{"metrics": {}, "claims": [1]}',
+    "a number of 400 digits": '{"metrics": {"decay.plain.final": {"value": ' + "9" * 400 + ', "rtol": 0, "atol": 0}}}',
     "entries of another kind": '{"metrics": {"decay.plain.final": 3}, "claims": {}}',
     "infinite tolerance": '{"metrics": {"decay.plain.final": {"value": 1, "rtol": 0, "atol": Infinity}}, "claims": {}}',
     "absurd tolerance": '{"metrics": {"decay.plain.final": {"value": 1, "rtol": 50, "atol": 0}}, "claims": {}}',
@@ -251,6 +363,10 @@ def test_a_damaged_baseline_is_named(toy_result: Path, command: Command, kind: s
 
 
 HEAD = '{"chapter": "90", "experiment": "decay", "samples": 2, "failed": 0, "varied": {}, '
+ROW = (
+    '{"samples": 2, "holds": 1, "share": 0.5, "low": 0, "high": 1, "median_margin": 0, "parameter": null, '
+    '"correlation": null, "quantiles": []}'
+)
 STUDIES = {
     "empty": "",
     "a list": "[]",
@@ -259,6 +375,11 @@ STUDIES = {
     "a chapter of another kind": HEAD.replace('"90"', "[90]") + '"claims": {}}',
     "other rows": HEAD + '"claims": {"C": 1}}',
     "binary": "\x00\x01",
+    "varied null": HEAD.replace('"varied": {}', '"varied": null') + '"claims": {}}',
+    "an experiment of another kind": HEAD.replace('"decay"', "[1]") + '"claims": {}}',
+    "a share a text": HEAD + f'"claims": {{"C90.01": {ROW.replace("0.5", "{}")}}}}}',
+    "a parameter a list": HEAD + f'"claims": {{"C90.01": {ROW.replace("null", "[1]")}}}}}',
+    "quantiles of texts": HEAD + f'"claims": {{"C90.01": {ROW.replace("[]", "[1, 2, 3, 4, {}]")}}}}}',
 }
 
 
@@ -270,6 +391,39 @@ def test_a_damaged_study_is_named(toy_result: Path, command: Command, kind: str)
     status, said = command("report")
     assert status == 2
     assert f"{path} is no study" in said
+
+
+@pytest.mark.parametrize(
+    "content", ["", "5", "[null]", '[{"metrics": 5}]', '[{"metrics": [], "claims": []}]', "\0",
+                '[{"chapter": "90", "experiment": {}, "version": "1", "compared": 1, "metrics": [], "claims": {}}]',
+                '[{"chapter": "90", "experiment": "x", "version": "1", "compared": 1, "metrics": [5], "claims": {}}]'],
+)  # fmt: skip
+def test_a_damaged_crosscheck_is_named(toy_result: Path, command: Command, content: str) -> None:
+    path = Path("results/crosscheck/crosscheck.json")
+    path.parent.mkdir()
+    path.write_text(content)
+    status, said = command("report")
+    assert status == 2
+    assert f"{path} is no table of comparisons" in said
+
+
+def test_damaged_samples_of_a_study_are_named(toy_result: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = Path("samples.jsonl.gz")
+    for content in (b"no gzip", gzip.compress(b"{}")[:-9]):
+        path.write_bytes(content)
+        with pytest.raises(InputError, match=r"samples\.jsonl\.gz holds no samples of a study"):
+            list(study.read_samples(path))
+
+
+@pytest.mark.parametrize("content", ["", "[]", '{"runs": [5]}', '{"runs": [{"content": "a", "value": "b"}]}', "\0"])
+def test_a_damaged_search_is_run_again(toy_result: Path, command: Command, content: str) -> None:
+    words = "tune case=decay.plain minimise=final budget=2 workers=1 decay.rate=1..3 law.denominator=1..3"
+    said = command(words)[1]
+    (path,) = Path("results/tuning").glob("*.json")
+    before = path.read_text()
+    path.write_text(content)
+    assert command(words)[1] == said
+    assert path.read_text() == before
 
 
 LINES = ["", "null", "5", "[]", "{}", '{"index": "x"}', '{"index": 0}', '{"index": 0, "digest": 5}', "\x00", "{" * 5000]

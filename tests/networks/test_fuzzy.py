@@ -74,3 +74,17 @@ def test_inputs_broadcast():
 def test_a_rule_about_an_unknown_set_is_refused():
     with pytest.raises(ValueError, match="height is huge"):
         FuzzySystem(SETS, [{"height": "huge"}])
+
+
+def test_weights_of_rules_shift_the_blend_and_equal_ones_do_not():
+    x = {"distance": 9.0, "height": 4.0, "direction": 0.4}
+    weights = np.arange(12.0)
+    plain, weighted = (FuzzySystem(SETS, RULES, given).strengths(**x) for given in (None, weights.tolist()))
+    assert weighted == pytest.approx(weights * plain / (weights @ plain))
+    assert FuzzySystem(SETS, RULES, [3.0] * 12).strengths(**x) == pytest.approx(plain)
+    last = FuzzySystem(SETS, RULES, [0.0] * 11 + [1.0]).rescaled("distance", 2.0)
+    far = last.strengths(distance=-900, height=0, direction=0)
+    assert far[-1] == 1.0
+    for wrong in ([1.0], [-1.0] * 12, [0.0] * 12):
+        with pytest.raises(ValueError, match="is not allowed: it must be 12 numbers, 0 or more"):
+            FuzzySystem(SETS, RULES, wrong)

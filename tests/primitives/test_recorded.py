@@ -70,6 +70,11 @@ COMMAS = rows("{t};{x};{y}").replace(".", ",")
         "% recorded by hand\n%time,x,y\n" + PLAIN,
         "// t;x;y\n" + COMMAS,
         "sep=;\ntime;x;y\n" + COMMAS,
+        "Subject 2, Trial 1\n; exported\ntime,x,y\n" + PLAIN,
+        ",,\n,,\n,time,x,y\n" + rows(",{t},{x},{y}"),
+        "Datum;Zeit;X;Y\n" + "".join(f"28.11.2026;{row}\n" for row in COMMAS.splitlines()),
+        "time,x_m_smooth,y_m_smooth\n" + PLAIN.replace(",0.0", ",\u22120.0"),
+        "TIME(S);X(M);Y(M)\r" + COMMAS.replace("\n", "\r"),
         rows("{t}\t{x}\t{y}").replace(".", ","),
         rows("{t} {x}  {y}").replace(".", ","),
         'time,x,y\n' + rows('"{t}","{x}","{y}"'),
@@ -108,6 +113,11 @@ def test_files_of_many_makes_hold_the_same_path(tmp_path: Path, text: str, encod
         ("time,x [inch],y [inch]", Format(time_unit="ms"), 0.0254, 1e-3),
         ("t_ms,x_cm,y_cm", Format("cm", "ms"), 1e-2, 1e-3),
         ("t_ms,x_cm,y_cm", Format(), 1e-2, 1e-3),
+        ("t_min,x_cm,y_cm", Format(), 1e-2, 60),
+        ("time in minutes,x in mm,y in mm", Format(), 1e-3, 60),
+        ("time [milliseconds],x [millimeters],y [millimeters]", Format(), 1e-3, 1e-3),
+        ("time,x,y\n[ms],[mm],[mm]", Format(), 1e-3, 1e-3),
+        ("time,x,y\nseconds,centimeters,centimeters", Format(), 1e-2, 1),
         ("time,x,y", Format("mm", "ms"), 1e-3, 1e-3),
         ("time,x [px],y [px]", Format("mm", "s"), 1e-3, 1.0),
     ],
@@ -130,7 +140,7 @@ def test_units_come_from_the_header_or_from_who_knows_better(
     [
         ("time,x [px],y [px]", Format(), "its header gives x in px; set unit= to m, cm, mm, inch"),
         ("time,x [mm],y [mm]", Format("cm"), "its header gives x in mm, not in cm; set unit=mm"),
-        ("time [min],x,y", Format(), "its header gives time in min; set time_unit= to s, ms, us, ns"),
+        ("time [h],x,y", Format(), "its header gives time in h; set time_unit= to s, ms, us, ns, min"),
         ("time,x1,y1", Format(), "its columns are time, x1, y1; they must be time, x, y"),
         ("time,left.x,right.x,y", Format(), "its columns left.x, right.x could both be x; rename one"),
     ],
@@ -229,7 +239,31 @@ def test_a_million_rows_take_less_than_two_seconds(tmp_path: Path) -> None:
         ([*ROWS[:4], ROWS[3], *ROWS[5:]], "time,x,y\n", "does not increase at line 6"),
         (ROWS[:7], "time,x,y\n", "has 7 samples; there must be at least 8"),
         ([], "", "has 0 samples"),
-        ([], "time,x,y\n", "has 0 samples"),
+        ([], "time,x,y\n", "it has no row of numbers parted by commas, semicolons, tabs or blanks"),
+        (["0.5|1|2"] * 9, "time|x|y\n", "it has no row of numbers parted by"),
+        ([f"2026-11-28T10:00:0{k},{k},1" for k in range(9)], "time,x,y\n", "line 2 holds .*its time must be a number"),
+        ([f"28.11.2026 10:00:0{k}.5,{k},1" for k in range(9)], "time,x,y\n", "line 2 holds .*not a date or a clock's"),
+        (["2.0,NA,NA", *ROWS[1:]], "time,x,y\n", "line 2 holds '2.0,NA,NA': every entry must be a finite number"),
+        ([f"{k}.0D-1,1.0D0,1" for k in range(9)], "time,x,y\n", "line 2 holds '0.0D-1,"),
+        (
+            [f'"{k}",{row}' for k, row in enumerate(ROWS)],
+            '"time","x","y"\n',
+            "line 2 has 4 entries, but .* names 3 col",
+        ),
+        ([f"{k},05,1,5,2,0" for k in range(9)], "time,x,y\n", "line 2 has 6 entries, but the header names 3 columns"),
+        (
+            [f"0.{k};1,{k}00;0.5" for k in range(1, 10)],
+            "t;x;y\n",
+            "line 2 holds .*either . or , and no mark between th",
+        ),
+        (
+            [f"0,{k};1.{k}00,0;0,5" for k in range(1, 10)],
+            "t;x;y\n",
+            "line 2 holds .*either . or , and no mark between t",
+        ),
+        (ROWS, "0,1,2\n", "line 1 numbers the columns; delete it, or name them time, x, y"),
+        (ROWS, "time,x,y\ns,px,px\n", "its header gives x in px; set unit= to m, cm, mm, inch"),
+        (ROWS, "time,x [mm],y [cm]\n", "its header gives x, y in mm, cm; give all in one unit"),
         ([row + ",0" for row in ROWS], "", "line 1 has 4 numbers; it must have time, x, y"),
         ([f"{0.1 * k},1,2" for k in range(10)], "", "it never moves: all its samples are at one place"),
     ],
@@ -244,6 +278,13 @@ def test_a_file_or_unit_that_is_not_there_gets_one_sentence(tmp_path: Path) -> N
         read_path("no.csv")
     with pytest.raises(ValueError, match="unit = ft is not allowed: it must be one of m, cm, mm, inch"):
         read_path(write(tmp_path, ROWS), Format("ft"))
+
+
+def test_what_is_no_text_is_said_to_be_none(tmp_path: Path) -> None:
+    for begin in (b"PK\x03\x04\x14\0", b"\x1f\x8b\x08\0"):
+        (tmp_path / "path.csv").write_bytes(begin + bytes(range(256)))
+        with pytest.raises(ValueError, match="it is a spreadsheet or an archive, not text; export or unpack it first"):
+            read_path(str(tmp_path / "path.csv"))
 
 
 def test_several_files_take_turns(tmp_path: Path) -> None:

@@ -295,6 +295,7 @@ def test_the_index_shows_the_equation_itself_with_its_lines_and_says_what_is_not
     assert browser.js(f"{fraction}.height > 1.5 * parseFloat(getComputedStyle(document.body).fontSize)"), (
         "it is typeset"
     )
+    browser.wait("[...document.fonts].some((font) => font.family == 'formulas' && font.status == 'loaded')")
     browser.wait("document.getElementById('eq-90.1').innerText.includes('E90.01')")  # rendered once it is in view
     unused = "document.getElementById('eq-90.2')"  # below the fold: not rendered, so no innerText
     assert "Not used." in browser.js(f"{unused}.textContent")

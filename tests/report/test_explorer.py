@@ -69,3 +69,13 @@ def test_the_planar_arm_of_chapter_4_has_a_scene_from_what_was_recorded(tmp_path
         staged = experiment.simulation.stage(world, Recording({"time": np.arange(2.0), "position": angles}), config)
         _, poses = world.animate(staged, [0.0, 1.0])
     assert np.abs(poses[1] - poses[0]).max() > 0.5, "the links have moved"
+
+
+def test_without_a_film_the_camera_sees_all_that_is_not_hidden() -> None:
+    """An arm 1 m high at (2, 0), and a body that is put away far below."""
+    arm, away = np.array([[2.0, 0.0, height] for height in np.linspace(0, 1, 9)]), np.array([[2.0, 0.0, -9.0]])
+    camera = explorer._fitted(np.vstack([arm, away]))
+    np.testing.assert_allclose(camera.target, (2.0, 0.0, 0.5))
+    assert 2 * camera.distance * np.tan(np.deg2rad(camera.field_of_view / 2)) > 1.0, "the whole arm fits"
+    assert camera.distance < 2.0, "and fills the picture"
+    assert explorer._fitted(np.array([[0, 0, 0.1], [1, 1, 0.1]])).pitch == -89.0, "a plane is seen from above"

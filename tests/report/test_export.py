@@ -68,3 +68,26 @@ def test_draw_writes_them_beside_the_results(toy_result: Path, command: Command,
 ])  # fmt: skip
 def test_an_unknown_look_is_refused(toy_result: Path, command: Command, words: str, sentence: str) -> None:
     assert command(f"draw {words}") == (2, f"dexrepro: {sentence}\n")
+
+
+def test_a_run_with_other_parameters_is_drawn_beside_the_books(toy_result: Path, command: Command) -> None:
+    """A lecturer's case: the figure of a changed run, for dark slides."""
+    assert command("run decay.start=0.5 workers=1")[0] == 0
+    (folder,) = Path("results/runs").glob("decay-*")
+    before = whole(folder)
+    status, said = command(f"draw {folder} style=dark format=pdf")
+    assert (status, said) == (0, f"results/figures/dark/{folder.name}/fig_90_10.pdf\n")
+    assert Path(said.strip()).read_bytes().startswith(b"%PDF")
+    assert not Path("results/figures/dark/fig_90_10.pdf").exists(), "that is the place of the book's own"
+    assert whole(folder) == before
+    assert command(f"draw {folder}") == (0, f"{folder}\n")
+
+
+@pytest.mark.parametrize(("words", "sentence"), [
+    ("results/runs/none style=dark", "results/runs/none/run.json cannot be used"),
+    ("results/chapter90/decay only=decay", "only: a folder says which result; leave out one of the two"),
+])  # fmt: skip
+def test_a_folder_without_a_result_is_refused(toy_result: Path, command: Command, words: str, sentence: str) -> None:
+    status, said = command(f"draw {words}")
+    assert status == 2
+    assert said.startswith(f"dexrepro: {sentence}")

@@ -9,7 +9,7 @@ import pytest
 from dexrepro import chapters
 from dexrepro.config import compose_chapter
 from dexrepro.provenance import provenance
-from dexrepro.report import parameters, symbols
+from dexrepro.report import parameters, symbols, words
 
 
 @pytest.mark.parametrize(
@@ -53,3 +53,13 @@ def test_every_chapter_names_its_symbols(chapter: str) -> None:
 def test_a_symbol_is_found_by_its_letter_and_by_the_word_for_it() -> None:
     assert symbols.text("1/gamma_1") == "1/γ_1 (1/gamma_1)"
     assert symbols.text("k_o") == "k_o"
+
+
+@pytest.mark.parametrize(("written", "shown"), [
+    ("K_R < 300 N/m", "<i>K</i><sub><i>R</i></sub> &lt; 300 N/m"),
+    ("so X_2,d = s R X_l.", "so <i>X</i><sub>2,<i>d</i></sub> = s R <i>X</i><sub><i>l</i></sub>."),
+    ("|G|^2 and lambda_1", "|G|<sup>2</sup> and <i>λ</i><sub>1</sub>"),
+    ("run only=skill_reuse a_b=3 shared.k_o.x", "run only=skill_reuse a_b=3 shared.k_o.x"),
+])  # fmt: skip
+def test_symbols_in_a_sentence_are_typeset_and_names_are_left_alone(written: str, shown: str) -> None:
+    assert str(words.prose(written)) == shown

@@ -82,6 +82,13 @@ LIMIT = '<limit lower="-1" upper="2" effort="0" velocity="3"/>'
 LOOP = '<joint name="loop" type="revolute"><parent>three</parent><child>one</child></joint>'
 
 
+HANGING = "".join(  # a thousand frames, each fixed to the one before
+    f'<link name="f{k}"/><joint name="g{k}" type="fixed"><parent link="{f"f{k - 1}" if k else "tip"}"/>'
+    f'<child link="f{k}"/></joint>' for k in range(1100))  # fmt: skip
+BOMB = "<!DOCTYPE robot [<!ENTITY e0 'xxxxxxxxxx'>" + "".join(
+    f"<!ENTITY e{k + 1} '{f'&e{k};' * 20}'>" for k in range(9)) + "]><robot a='&e9;'"  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("change", "encoding"),
     [
@@ -97,6 +104,13 @@ LOOP = '<joint name="loop" type="revolute"><parent>three</parent><child>one</chi
         (("</robot>", f"<transmission>{LOOP}<link name='one'/></transmission></robot>"), "utf-8"),
         (("</robot>", "</robot>\n\0\0\0"), "utf-8"),
         (('<mass value="2"/>', '<mass value="2"/><!-- ${mass} -->'), "utf-8"),
+        (("<robot", "<!-- of 2019 -->\n\n<?xml version='1.0'\nencoding='utf-8'?>\r\n<robot"), "utf-8"),
+        (("<robot", '<!DOCTYPE robot [<!ENTITY two "2">]><robot'), "utf-8"),
+        (("<robot", "<robot xmlns='http://www.ros.org' xmlns:xacro='http://www.ros.org/wiki/xacro'"), "utf-8"),
+        (("</robot>", f"<ros2_control><joint name='yaw'/>{LOOP}</ros2_control></robot>"), "utf-8"),
+        (('<axis xyz="1 1 0"/>', '<axis xyz="1E1  1.0e+01\t0"/><dynamics damping="0.1" friction="1"/>'), "utf-32"),
+        (("</robot>", f"<!--{'x' * 10_000_000}--></robot>"), "utf-8"),
+        (("</robot>", HANGING + "</robot>"), "utf-8"),
     ],
 )
 def test_what_real_files_hold_beside_the_arm_changes_nothing(
@@ -113,6 +127,12 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
         (("</robot>", ""), "it is no XML file"),
         (("robot", "mujoco"), "it is an MJCF file of MuJoCo"),
         (("robot", "html"), "it is no URDF: it begins with <html>"),
+        (("<robot", BOMB), "it is no XML file: limit on input amplification"),
+        (('value="2"', 'value="0,2"'), 'line 1: <mass value="0,2"> does not hold one number'),
+        (('value="2"', 'value="inf"'), '<mass value="inf"> does not hold one number'),
+        (('xyz="0.1 0 0"', 'xyz="0.1, 0, 0"'), '<origin xyz="0.1, 0, 0"> does not hold 3 numbers parted by blanks'),
+        (('xyz="0.1 0 0"', 'xyz="inf 0 0"'), '<origin xyz="inf 0 0"> does not hold 3 numbers'),
+        (('"camera" type="fixed">', '"camera" type="prismatic"><mimic joint="yaw" multiplier="-1"/>'), "'camera' off"),
         (('value="2"', 'value="${m}"'), "it still holds xacro; turn it into URDF first"),
         (("</robot>", "<xacro:hand/></robot>"), "it still holds xacro; turn it into URDF first"),
         (('<link name="tip"', '<link name="toe"'), "has no child link that is in the file"),
@@ -123,8 +143,8 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
         (("continuous", "prismatic"), "joint 'yaw' is prismatic; .*root: one begins the arm behind it"),
         (('"stand" type="fixed"', '"stand" type="floating"'), "joint 'stand' is floating; .*root: base begins"),
         (('value="0.2"', 'value="-0.2"'), "link 'eye' has the mass -0.2 kg"),
-        (('value="2"', 'value="heavy"'), '<mass value="heavy"> does not hold 1 numbers'),
-        (('value="2"', 'value="nan"'), '<mass value="nan"> does not hold 1 numbers'),
+        (('value="2"', 'value="heavy"'), '<mass value="heavy"> does not hold one number'),
+        (('value="2"', 'value="nan"'), '<mass value="nan"> does not hold one number'),
         (('parent link="floor"', 'parent link="one"'), "the joints form a loop at link 'one'"),
         (('parent link="floor"', 'parent link="flor"'), "joint 'stand' has no parent link that is in the file"),
         (('value="2"', 'value="-4"'), "link 'one' has the mass -4 kg; it must not be negative"),
@@ -230,6 +250,22 @@ def test_no_limits_or_zeros_are_none(path: Path) -> None:
         assert from_urdf(str(path), "tip").upper.tolist() == [np.inf, np.inf]
 
 
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (("</robot>", '<link name="stray"/></robot>'), "link 'stray' hangs on no joint; only what hangs on 'floor' is"),
+        (('"camera" type="fixed"', '"camera" type="floating"'), "joint 'camera' off the chain is floating and taken"),
+        ((LIMIT, '<limit lower="-170" upper="170"/>'), "joint 'pitch' has the limits -170 to 170; they are in rad"),
+    ],
+)
+def test_what_is_read_though_it_is_doubtful_is_said(path: Path, change: tuple[str, str], sentence: str) -> None:
+    path.write_text(URDF.replace("\n", "").replace(*change, 1))
+    with pytest.warns(UserWarning, match=f"three.urdf': {sentence}") as caught:
+        arm = from_urdf(str(path), "tip")
+    assert len(caught) == 1
+    assert arm.links[1].mass == pytest.approx(0.7)
+
+
 def test_a_follower_off_the_chain_stands_at_its_offset(path: Path) -> None:
     plain = from_urdf(str(path), "tip")
     turning = '"camera" type="revolute"><axis xyz="0 1 0"/><mimic joint="else" offset="0.5"/>'
@@ -237,6 +273,10 @@ def test_a_follower_off_the_chain_stands_at_its_offset(path: Path) -> None:
     turned = from_urdf(str(path), "tip")
     assert turned.links[1].mass == plain.links[1].mass
     assert turned.links[1].com != pytest.approx(plain.links[1].com, abs=1e-6)
+    sliding = '"camera" type="prismatic"><axis xyz="0 2 0"/><mimic joint="else" offset="0.3"/>'
+    path.write_text(URDF.replace('"camera" type="fixed">', sliding))
+    body, moved = plain.links[1], from_urdf(str(path), "tip").links[1]
+    np.testing.assert_allclose(np.subtract(moved.com, body.com), [0, 0.3 * 0.2 / body.mass, 0], atol=1e-12)
 
 
 OBJ = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.3\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n"
@@ -278,5 +318,10 @@ def test_meshes_that_are_not_there_are_capsules(tmp_path: Path) -> None:
     text = ROD.format("turn", "0 0 0", 1, 0.001, 0.02, 0.02, 0, 0, 0)
     path.write_text(text.replace("</inertial>", "</inertial>" + VISUAL.format("package://no/a.obj")))
     assert [shape.kind for shape in from_urdf(str(path), "tip").links[0].shapes] == ["capsule"]
+    for scale in ("1,1,1", "0.001 0.001", "0 0 0"):
+        path.write_text(text.replace("</inertial>", "</inertial>" + VISUAL.format("rod.obj").replace("2 2 2", scale)))
+        (tmp_path / "rod.obj").write_text(OBJ)
+        with pytest.raises(ValueError, match=rf'line 5: <mesh scale="{scale}"> '):
+            from_urdf(str(path), "tip")
     with pytest.raises(ValueError, match=r"packages.no = nowhere is not allowed: there is no such folder"):
         from_urdf(str(path), "tip", packages={"no": "nowhere"})

@@ -127,8 +127,8 @@ ERRATA = (
         "E4.20",
         "4.6",
         "gap",
-        "Where the references of phase III begin is not stated; from A they would start 0.35 m from the arm, outside "
-        "the bound of 0.21 m.",
+        "Where the references of phase III begin is not stated; from A they would start far from the arm, outside "
+        "the bound.",
         "They begin at the initial position.",
     ),
     Erratum("E4.21", "(4.27)", "slip", "tau_x is a joint torque.", "tau."),

@@ -10,7 +10,7 @@ ERRATA = (
         "(6.9)-(6.18)",
         "reading",
         "The bounds h are on x^c - x, the barrier's argument is z1 = k_z (x^c - x). Taken in the units of z1, h = 0.5 "
-        "is a tube of 0.0033 cm, in which the deviation described for Fig. 6.2d cannot occur.",
+        "is a tube 1/k_z as wide, in which the deviation described for Fig. 6.2d cannot occur.",
         "Scaled bound H = k_z h.",
         switch="planar_constraint.cdmp.bound_scaling=printed",
         evidence=(
@@ -107,7 +107,7 @@ ERRATA = (
         "(6.19)-(6.22)",
         "slip",
         'The derivative of V^1 is negative for v != 0 only, and "V^1 < 0" lacks a dot; convergence to the goal rests '
-        'on Assumption 6.1 (called "assumption 5.1").',
+        'on Assumption 6.1 (called "Assumption 5.1").',
         "dV^1/dt <= 0, with LaSalle's argument for v = 0.",
     ),
     Erratum(
@@ -121,8 +121,9 @@ ERRATA = (
         "E6.11",
         "6.3-6.4, labels",
         "slip",
-        '"Condition 6.3" is 6.2; cases 1 and 2 are swapped between the conditions; the lower-bar h bounds from above '
-        'in Condition 6.2; "Part C" is 6.3.3; Fig. 6.10 cites (6.21) for (6.25); three experiments are announced, '
+        '"Condition 6.3" is Condition 6.2; cases 1 and 2 are swapped between the conditions; the lower-bar h bounds '
+        'from above in Condition 6.2; "Part C" is 6.3.3; Fig. 6.10 cites (6.21) for (6.25); three experiments are '
+        "announced, "
         "two exist.",
     ),
     Erratum(

@@ -262,7 +262,11 @@ def fuzzy_system(config: Config) -> FuzzySystem:
         "height": {label: (scene[label], width["height"]) for label in ("low", "tall")},
         "direction": {label: (scene[label], fuzzy.direction_widths[label]) for label in ("left", "forward", "right")},
     }
-    return FuzzySystem(sets, [dict(zip(("distance", "height", "direction"), rule)) for rule in fuzzy.rules])
+    rules = [dict(zip(("distance", "height", "direction"), rule)) for rule in fuzzy.rules]
+    try:
+        return FuzzySystem(sets, rules, fuzzy.weights)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"fuzzy.{error}") from error
 
 
 class NewTask:

@@ -11,10 +11,11 @@ ERRATA = (
         "E8.01",
         "8.4.1",
         "reading",
-        "The pose of the arm is not stated. Elbow-down and with rate 1 the law holds at most 16.5 N in the middle of "
-        "the y bound, below the 28.8 N of load at the start: the arm comes to rest near the bound, which a sampling "
-        "time of 1 ms does not survive.",
-        "Elbow-up (at most 12.2 N along the circle). Elbow-down with a step of 0.01 ms no bound is violated either.",
+        "The pose of the arm is not stated. Elbow-down and with rate 1 the law holds less in the middle of "
+        "the y bound than the load at the start: the arm comes to rest near the bound, which a sampling "
+        "time of {circle_tracking.step:g} s does not survive.",
+        "Elbow-up. Elbow-down with a step of {circle_tracking.cases.down_unit_fine.step:g} s no bound is violated "
+        "either.",
         "circle_tracking.arm.elbow=1",
         (f"{CIRCLE}.down_unit.violated_at", f"{CIRCLE}.down_unit_fine.bound_used"),
     ),
@@ -22,8 +23,8 @@ ERRATA = (
         "E8.02",
         "(8.30)",
         "reading",
-        "phi changes its sign beyond the bound, and 1.41 iota is a stable false equilibrium: after a violation, which "
-        "only sampling can bring about, a run may look settled.",
+        "phi changes its sign beyond the bound, and sqrt(2) iota is a stable false equilibrium: after a violation, "
+        "which only sampling can bring about, a run may look settled.",
         "A violation ends the run and is reported.",
     ),
     Erratum(
@@ -129,7 +130,8 @@ ERRATA = (
         "error",
         "U = 0.001 > 0 is a growing mode that cannot be stabilised: the Riccati equation has no stabilising solution. "
         "Ce = -0.4 is negative damping (a reading: with tau_e on the environment only A has the wrong sign, and the "
-        "gain is a spring of 358 in place of 344 N/m). With tau_e on the robot the printed gain runs away.",
+        "gain is {sponge.lqr_printed_environment.gain_x:.0f} in place of {sponge.lqr.gain_x:.0f} N/m). With tau_e on "
+        "the robot the printed gain runs away.",
         "Ce = 0.4, M = -1.",
         "+sponge.cases.as_printed={interaction:{gain:{_target_:dexrepro.control.impedance_learning.ConstantGain,gain:{_target_:dexrepro.control.interaction_optimum.model_gain,model:[7,-0.4,0.001],cost:${sponge.cost}}}}}",
         (f"{SPONGE}.lqr_printed.stopped_at", f"{SPONGE}.lqr_printed_environment.final_compression"),
@@ -148,9 +150,10 @@ ERRATA = (
         "E8.17",
         "8.5",
         "reading",
-        "At the printed 50 Hz the velocity loop is unstable on this model, at 200 Hz it is not. The real robot has "
-        "inner loops and friction that the model lacks.",
-        "1 kHz.",
+        "At the printed 50 Hz the velocity loop is unstable on this model, with "
+        "{sponge.cases.at_200_hz.control_period:g} s between samples it is not. The real robot has inner loops and "
+        "friction that the model lacks.",
+        "{sponge.control_period:g} s between samples.",
         "sponge.control_period=0.02",
         (f"{SPONGE}.at_50_hz.stopped_at", f"{SPONGE}.at_200_hz.bound_used"),
     ),
@@ -165,7 +168,7 @@ ERRATA = (
         "E8.19",
         "8.4",
         "slip",
-        "Case 1 cites Fig. 8.8c, d (it is 8.6); RBFNN and FNN name the same network; subsection II-B and Theorem 1 do "
-        "not exist.",
+        "Case 1 cites Fig. 8.8c, d (it is Fig. 8.6); RBFNN and FNN name the same network; subsection II-B and Theorem "
+        "1 do not exist.",
     ),
 )

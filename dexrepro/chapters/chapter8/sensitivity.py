@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from dexrepro.experiment import AllMetrics
+from dexrepro.experiment import AllMetrics, Config
 
 
 class Variant(NamedTuple):
@@ -20,10 +20,12 @@ class Variant(NamedTuple):
     base: tuple[str, str | float]
 
 
-def sensitivity_table(variants: Iterable[Variant], metrics: AllMetrics, names: Mapping[str, str]) -> pd.DataFrame:
+def sensitivity_table(
+    variants: Iterable[Variant], metrics: AllMetrics, names: Mapping[str, str], config: Config
+) -> pd.DataFrame:
     """One row a variant: both numbers as run and as varied, and whether the comparison turns around.
 
-    names: what each metric is called, with its unit.
+    names: what each metric is called, with its unit. The text of a variant may name parameters of its case as {0.key}.
     """
     rows = []
     for variant in variants:
@@ -33,7 +35,7 @@ def sensitivity_table(variants: Iterable[Variant], metrics: AllMetrics, names: M
         rows.append(
             {
                 "claim": variant.claim,
-                "variant": variant.what,
+                "variant": variant.what.format(config.cases.get(variant.varied[0])),
                 "quantity": names[variant.metric],
                 "as run": base[0],
                 "rival, as run": base[1],

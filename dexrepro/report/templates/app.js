@@ -25,6 +25,7 @@ function load(url) {
 const box = document.getElementById("search");
 const found = document.getElementById("found");
 const MOST = 40;
+const KINDS = ["chapter", "experiment", "figure", "table", "claim", "law", "symbol", "equation", "erratum", "parameter"];
 
 // A verdict of two words is looked for as one.
 const PHRASES = /\b(not|after|by) (reproduced|attributed|testable|evaluated|correction|construction)\b/g;
@@ -34,7 +35,7 @@ async function search() {
   await load("search-index.js");
   const wanted = joined(box.value).split(/\s+/).filter(Boolean);
   const matches = ([kind, text, , more]) => wanted.every((word) => joined(`${kind} ${text} ${more}`).includes(word));
-  const hits = wanted.length ? SEARCH_INDEX.filter(matches) : [];
+  const hits = wanted.length ? SEARCH_INDEX.filter(matches).sort((a, b) => KINDS.indexOf(a[0]) - KINDS.indexOf(b[0])) : [];
   const items = hits.slice(0, MOST).map(([kind, text, to]) => make("li", {}, make("a", { href: to },
     make("span", { className: "kind", textContent: kind }), make("span", { textContent: text }))));
   const count = hits.length > MOST ? `the first ${MOST} of ${hits.length}; add a word` : `${hits.length || "nothing"} found`;

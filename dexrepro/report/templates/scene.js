@@ -45,8 +45,9 @@ async function showScene(shown, recorded) {
     renderer.setSize(w, h, false);
     camera.aspect = w / h;
     camera.updateProjectionMatrix();
-    const flat = eye.distance * Math.cos(eye.pitch);
-    camera.position.set(target[0] + flat * Math.sin(eye.yaw), target[1] - flat * Math.cos(eye.yaw), target[2] - eye.distance * Math.sin(eye.pitch));
+    const far = eye.distance * Math.max(1, 1.4 / camera.aspect);  // a narrow window shows as much, smaller
+    const flat = far * Math.cos(eye.pitch);
+    camera.position.set(target[0] + flat * Math.sin(eye.yaw), target[1] - flat * Math.cos(eye.yaw), target[2] - far * Math.sin(eye.pitch));
     camera.lookAt(new THREE.Vector3(...target));
     renderer.render(scene, camera);
   }

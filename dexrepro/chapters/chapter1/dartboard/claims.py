@@ -17,7 +17,8 @@ CLAIMS = (
         "A smaller scale makes the tool more precise.",
         ordered(*(f"dartboard.{case}.general_radius" for case in ("scale1", "scale2", "scale3", "book", "scale6"))),
         by_construction=OPERATOR,
-        note="Median distance of the hits from the centre for constant scales of 1, 2, 3, 4.5 and 6.",
+        note="Median distance of the hits from the centre for constant scales of 1, 2, 3, "
+        "{dartboard.mappings.general.factor:g} and 6.",
     ),
     fig_1_14(
         "C1.14",
@@ -43,7 +44,7 @@ CLAIMS = (
         _nobody_lower("smooth"),
         control=_nobody_lower("scale3"),
         readings={"the scale set by the unfiltered speed of the hand": _nobody_lower("book")},
-        searched="a low-pass of the hand's speed, half the tremor, other seeds, rings of 3 to 10 mm",
+        searched="a low-pass of the hand's speed, half the tremor, other seeds, other rings",
         where="1.5.2.1",
         note="The hand's speed sets the scale through a low-pass of 2 Hz: {dartboard.smooth.wins} higher, "
         "{dartboard.smooth.ties} equal, {dartboard.smooth.losses} lower. Unfiltered, {dartboard.book.wins}, "
@@ -66,9 +67,11 @@ CLAIMS = (
         searched="constant scales of 1 to 6, with and without a low-pass of the hand's speed",
         where="1.5.2.1",
         note="Largest displacement of the hand: {dartboard.book.proposed_excursion:.3f} m, and "
-        "{dartboard.book.general_excursion:.3f} m with the general mapping, whose scale of 4.5 is above the adaptive "
-        "one's mean between boards, {dartboard.book.scale_far:.2g}; {dartboard.scale3.general_excursion:.3f} and "
-        "{dartboard.scale2.general_excursion:.3f} m with constant scales of 3 and 2, between which its precision lies.",
+        "{dartboard.book.general_excursion:.3f} m with the general mapping, whose scale of "
+        "{dartboard.mappings.general.factor:g} is above the adaptive one's mean between boards, "
+        "{dartboard.book.scale_far:.2g}; {dartboard.scale3.general_excursion:.3f} and "
+        "{dartboard.scale2.general_excursion:.3f} m with constant scales of 3 and 2, between which its precision "
+        "lies.",
     ),
 )
 

@@ -15,9 +15,11 @@ from .experiment import MAPPINGS, boards
 
 FIGURES = {
     "1.15": Figure(
-        "(a) Hit points of thirteen synthetic operators on six boards; ten rings of 3 mm. (b) Hand speed, scale and "
-        "distance to the nearest centre of one operator. (c) Posture load of the forearm. The book shows photographs.",
-        "Most hits are closer to the centres with the proposed mapping, the widest few are its own.",
+        "(a) Hit points of thirteen synthetic operators on six boards; ten rings of {dartboard.ring:g} m. (b) Hand "
+        "speed, scale and distance to the nearest centre of one operator. (c) Posture load of the forearm. The book "
+        "shows photographs.",
+        "Rings with the hits of two mappings on six boards, hand speed, scale and distance over time, and posture "
+        "loads.",
     ),
 }
 UNITS = {"scale": "1", "tool": "m", "hand": "m"}

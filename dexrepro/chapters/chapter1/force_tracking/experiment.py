@@ -44,11 +44,16 @@ def stiffness(config: Config, time: Any) -> Any:
 
 def scene(config: Config) -> World:
     """Two planar arms that just touch the object."""
-    world = World(step=config.control_period, gravity=(0.0, 0.0, 0.0), perturbation=config.perturbation)
+    world = World(step=config.step, gravity=(0.0, 0.0, 0.0), perturbation=config.perturbation)
     for name in ("leader", "follower"):
         arm = planar(config.arm.lengths, config.arm.masses, base=config.bases[name])
         world.add_arm(name, arm, np.array(config.start[name]) * np.pi / 3)
     return world
+
+
+def stage(world: World, recording: Recording, config: Config) -> Recording:
+    leader, follower = np.split(recording["joints"], 2, axis=1)
+    return Recording({"time": recording.time, "leader.position": leader, "follower.position": follower})
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
@@ -66,13 +71,19 @@ def simulate(config: Config, rng: Rng) -> Recording:
             Elastic("object", ("follower", "leader"), lambda t: float(stiffness(config, t)), x1 - x0, unilateral=True)
         )
 
+        origin = 0.0  # of the displacements that the law knows and commands
+
         def lead(sense: Sense) -> Any:
-            return followers["leader"](sense, x0 + float(motion(config, sense.time)), height)
+            nonlocal origin
+            own = followers["leader"]
+            if config.frame == "tool":
+                origin = own.chain.forward(sense.position.tolist())[0] - x0
+            return own(sense, x0 + float(motion(config, sense.time)), height)
 
         def follow(sense: Sense) -> Any:
             own = followers["follower"]
-            position = own.chain.forward(sense.position.tolist())[0] - x1
-            return own(sense, x1 + float(law(sense.time, position, float(sense.force[0]))), height)
+            position = own.chain.forward(sense.position.tolist())[0] - x1 - origin
+            return own(sense, x1 + origin + float(law(sense.time, position, float(sense.force[0]))), height)
 
         probes: dict[str, Probe] = {"reference": lambda: followers["follower"].last[0] - x1}
         probes |= channels(config.law, "weights", "estimate")
@@ -81,21 +92,23 @@ def simulate(config: Config, rng: Rng) -> Recording:
             controllers={"leader": lead, "follower": follow},
             control_period=dt,
             probes=probes,
-            record_every=RECORDED,
+            record_every=RECORDED * round(dt / config.step),
             stop=lambda _: "left the workspace" if abs(followers["follower"].last[0] - x1) > config.workspace else None,
             on_divergence="stop",
         )
-    time, tip = recording.time, recording["follower.tip"][:, 0] - x1
+    time, partner = recording.time, recording["leader.tip"][:, 0] - x0
+    known = partner if config.frame == "tool" else 0.0
+    tip, reference = recording["follower.tip"][:, 0] - x1 - known, recording["reference"] - known
     series = {
         "time": time,
         "error": recording["object.force"] - config.desired_force,
         "displacement": tip,
-        "partner": recording["leader.tip"][:, 0] - x0,
-        "reference": recording["reference"],
-        "contact": motion(config, time) - config.desired_force / stiffness(config, time),
+        "partner": partner,
+        "reference": reference,
+        "contact": motion(config, time) - config.desired_force / stiffness(config, time) - known,
         "stiffness": stiffness(config, time) + 0.0 * time,
         "joints": np.hstack([recording["leader.position"], recording["follower.position"]]),
-        "tracking": np.abs(tip - recording["reference"]),
+        "tracking": np.abs(tip - reference),
     }
     if "weights" in recording and recording.status == "finished":
         series["lyapunov"], series["weights"] = lyapunov(recording, series, config), recording["weights"]

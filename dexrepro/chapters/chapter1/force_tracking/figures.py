@@ -24,12 +24,13 @@ FIGURES = {
         "5 s; the contact position x_d that gives the desired force, the reference x_r and the stiffness; the Lyapunov "
         "function of Eq. (1.34) along the run, which the book does not draw (W*: exact and small in case 1, elsewhere "
         "the best constant weights of moderate size).",
-        "The proposed law has the smallest force error of three controllers in all three cases.",
+        "Force errors of three controllers over time in three cases, contact position, reference and Lyapunov "
+        "function.",
     ),
 }
 UNITS = {
     "error": "N", "displacement": "m", "partner": "m", "reference": "m", "contact": "m", "stiffness": "N/m",
-    "joints": "rad", "tracking": "m", "lyapunov": "J", "weights": "m/s, 1/s, 1/s, 1/s",
+    "joints": "rad", "tracking": "m", "lyapunov": "1", "weights": "m/s, 1/s, 1/s, 1/s",
 }  # fmt: skip
 TABLES = {"T1.A": "Force error of every law in the three cases of Fig. 1.10"}
 ROLES = {"proposed": "book", "force": "rival", "passive": "plain"}

@@ -10,8 +10,9 @@ from dexrepro.report import style
 FIGURES = {
     "1.C": Figure(
         "AFR's contact force and phase (field or force law) while DFR touches a soft object lightly, simulated Baxter "
-        "arms; desired force 1.5 N, sensor noise 0.3 N. The book does not show the switch.",
-        "With a latch the phase changes once, with a bare comparison it changes many times.",
+        "arms; desired force {hand_over.desired_force:g} N, sensor noise {hand_over.sensor_noise:g} N. The book does "
+        "not show the switch.",
+        "Contact force and phase over time, with a latch and with a bare comparison.",
     )
 }
 UNITS = {"force": "N", "sensed": "N", "phase": "1"}
@@ -38,7 +39,10 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     axes[0, 0].set_ylabel("Contact force [N]")
     axes[0, 0].set_ylim(-0.15, 3.4)
     axes[0, 0].legend(loc="upper left", ncols=2)
-    return {"1.C": style.title(figure, "A latch hands over once where a bare comparison chatters")}
+    latched, bare = (metrics[case]["switches"] for case in ("latched", "bare"))
+    return {
+        "1.C": style.title(figure, f"The phase switches {latched} times with a latch, {bare} with a bare comparison")
+    }
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

@@ -13,6 +13,7 @@ from dexrepro.report import style
 from .claims import PRINTED
 from .experiment import VIEW
 
+EARLY = 1.5  # s, shown below
 FIGURES = {
     "1.1": Figure(
         "Simulated Baxter: the right arm (DFR) is teleoperated, the left arm (AFR) assists; the object is soft. The "
@@ -21,8 +22,8 @@ FIGURES = {
     ),
     "1.18": Figure(
         "Contact force on AFR along three synthetic trajectories, simulated Baxter arms under torque; the book shows "
-        "measurements. Errors after the 8th second (right of the line) are in T1.B. Bottom: the first 1.5 s.",
-        "The proposed law keeps the contact force closest to 15 N on all three trajectories.",
+        "measurements. Errors after the 8th second (right of the line) are in T1.B. Bottom: the start.",
+        "Contact forces of three laws over time on three trajectories, with the start enlarged.",
     ),
     "1.19": Figure(
         "Simulated Baxter. Instants of the task in the first trajectory, proposed law: start, object on the left, "
@@ -67,7 +68,7 @@ def _draw_forces(recordings: Recordings, metrics: Any, config: Config) -> Drawin
         for law, role in reversed(LAWS.items()):
             recording = recordings[f"{trial}_{law}"]
             axes[0, column].plot(recording.time, recording["force"], label=law, **style.LINES[role])
-            early = recording.time <= 1.5
+            early = recording.time <= EARLY
             axes[1, column].plot(recording.time[early], recording["force"][early], **style.LINES[role])
         numbers = [metrics[f"{trial}_{law}"]["rmse"] for law in LAWS]
         axes[0, column].set_title("RMSE " + " / ".join(f"{value:.2f}" for value in numbers) + " N")
@@ -76,7 +77,7 @@ def _draw_forces(recordings: Recordings, metrics: Any, config: Config) -> Drawin
             axis.set_ylim(0, 30)
         style.event(axes[0, column], config.settled, f"{config.settled:g} s")
 
-    style.edges(axes, "Time [s]", ("Contact force [N]", "First 1.5 s [N]"))
+    style.edges(axes, "Time [s]", ("Contact force [N]", f"First {EARLY:g} s [N]"))
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     best = all(
         metrics[f"{t}_proposed"]["rmse"] < min(metrics[f"{t}_{law}"]["rmse"] for law in ("passive", "fixed"))

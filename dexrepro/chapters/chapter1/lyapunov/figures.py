@@ -7,13 +7,13 @@ from dexrepro.report import style
 
 FIGURES = {
     "1.D": Figure(
-        "Left: V of Eq. (1.34) on the ramp of case 1, steps of 0.1 ms, for the law that knows z_d, the law that can be "
-        "built and the printed definition of e_f. Right: how the force error develops over 100 s for estimator gains L "
-        "around the bound of Routh's condition. Neither is in the book.",
-        "V falls at every step only for the ideal law; below an L of about 0.18 the force error grows.",
+        "Left: V of Eq. (1.34) on the ramp of case 1, steps of {lyapunov.step:g} s, for the law that knows z_d, the "
+        "law that can be built and the printed definition of e_f. Right: how the force error develops over "
+        "{lyapunov.long:g} s for estimator gains L around the bound of Routh's condition. Neither is in the book.",
+        "V over time for three forms of the law, and force errors over time for several gains L.",
     )
 }
-UNITS = {"lyapunov": "J", "error": "N"}
+UNITS = {"lyapunov": "1", "error": "N"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
@@ -29,7 +29,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     for column, role in zip(frame.columns[1:], ("printed", "extra1", "rival", "extra3", "plain", "book")):
         right.semilogy(frame["time"], frame[column], label=f"L = {column}/s", **style.LINES[role])
     right.set(xlabel="Time [s]", ylabel="Force error, largest\nof 10 s [N]", ylim=(1e-3, 1e3))
-    right.legend(loc="upper right", ncols=3)
+    right.legend(loc="lower left", ncols=2)
     share = 100 * (metrics["built"]["rising"] or 0)
     style.title(
         figure,

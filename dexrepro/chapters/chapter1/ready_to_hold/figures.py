@@ -16,18 +16,19 @@ FIGURES = {
     "1.7": Figure(
         "Potential (lines) and force (arrows) in the plane of the holding line for DFR far from, near to and at the "
         "object (circle), with the three points of Eq. (1.19). The book shows a sketch.",
-        "As DFR comes closer the minimum of the potential moves from beside the object into it.",
+        "Potential as lines and force as arrows in a plane, for three places of DFR.",
     ),
     "1.12": Figure(
-        "Simulated. The camera's object: four edge points, their noisy average at 15 Hz, off-centre, over two seconds.",
-        "The measured position scatters about a point 18 mm from the true centre.",
+        "Simulated. The camera's object: four edge points, their noisy average at {ready_to_hold.camera.rate:g} Hz, "
+        "off-centre, over two seconds.",
+        "Points of the measured position about the true centre of an object.",
     ),
     "1.16": Figure(
         "Simulated Baxter. Top: pictures at the book's instants. Then: AFR, DFR and object along the holding line, "
         "across it and up; clearance of AFR's end point from the object, which feels no contact here, so that it ends "
         "inside; weights; angles between the tools' axes and between "
         "AFR's axis and the direction to DFR. The book shows photographs.",
-        "AFR follows the object at a distance, comes to it when DFR does and keeps facing DFR.",
+        "Pictures of the task, and positions of both arms and the angle between them over time.",
     ),
 }
 UNITS = {

@@ -11,14 +11,15 @@ from dexrepro.report import style
 
 FIGURES = {
     "1.5": Figure(
-        "A hand moves 60 mm in a minimum-jerk movement of three durations; tool displacement with s(v) applied to each "
-        "sample's step and to the total displacement since the fixing (Eq. (1.11) to the letter). The book shows the "
-        "frames of the transformation.",
-        "With speed-dependent scaling the total form pulls the tool back to 60 mm, the incremental form keeps it.",
+        "A hand moves {relative_pose.move:g} m in a minimum-jerk movement of three durations; tool displacement with "
+        "s(v) applied to each sample's step and to the total displacement since the fixing (Eq. (1.11) to the "
+        "letter). The book shows the frames of the transformation.",
+        "Displacement of the tool over time in the incremental and the total form, for three durations of the "
+        "movement.",
     ),
     "1.6": Figure(
         "Tool frames of DFR and AFR for three orientations of DFR, by Eq. (1.14); z axes thick. The book shows one.",
-        "In every pair the two z axes point at each other and the x axes agree.",
+        "Pairs of tool frames with their z axes, for three orientations.",
     ),
 }
 

@@ -15,15 +15,16 @@ from .experiment import RELEASED, SIZES
 
 FIGURES = {
     "1.17": Figure(
-        "Rigid boxes held by 0.12, 0.20 and 0.30 m wide sides, simulated Baxter arms, friction contact: pictures at "
-        "holding, carrying and after the drop; contact force on AFR; height of the box. Lines: the start poses. The "
-        "book shows photographs.",
-        "All three sizes are gripped, carried and dropped into the bin.",
+        "Rigid boxes held by sides of {rigid_boxes.cases.small.width:g}, {rigid_boxes.cases.medium.width:g} and "
+        "{rigid_boxes.cases.large.width:g} m, simulated Baxter arms, friction contact: pictures at holding, carrying "
+        "and after the drop; contact force on AFR; height of the box. Lines: the start poses. The book shows "
+        "photographs.",
+        "Pictures of boxes of three sizes at three instants, and contact force and height over time.",
     ),
     "1.B": Figure(
         "Contact force on AFR with a rigid box while it is gripped and lifted, for five gains of the force law; the "
         "gain printed for the soft object (0.25) is the last. The force then alternates with every control sample.",
-        "A small gain holds the rigid box quietly, from 0.02 on the force jumps from sample to sample.",
+        "Contact force over time for five gains of the force law.",
     ),
 }
 UNITS = {"force": "N", "height": "m", "phase": "1"}

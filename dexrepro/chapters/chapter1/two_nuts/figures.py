@@ -15,11 +15,11 @@ FIGURES = {
     "1.13": Figure(
         "General mapping, one synthetic operator: roll of the hand with the comfortable band and the range of the "
         "forearm, and the tool's distance from the nearer nut. The book shows five photographs.",
-        "The hand stays far outside its comfortable range and the tool shakes by about a millimetre.",
+        "Roll of the hand with its comfortable band, and the tool's distance from the nearer nut, over time.",
     ),
     "1.14": Figure(
         "Re-fixing and a scale of 1, the same synthetic operator. The book shows five photographs.",
-        "The hand stays inside its comfortable range thanks to re-fixing, and the tool shakes less.",
+        "Roll of the hand with its comfortable band, and the tool's distance from the nearer nut, over time.",
     ),
 }
 UNITS = {"roll": "rad", "tool_roll": "rad", "hand": "m", "tool": "m", "scale": "1"}
@@ -29,7 +29,7 @@ TABLES = {"T1.C": "Posture, precision and time of thirteen synthetic operators w
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
     titles = {
         "general": ("1.13", "The general mapping keeps the hand out of its comfortable range"),
-        "proposed": ("1.14", "Re-fixing keeps the hand comfortable, a small scale keeps the tool steady"),
+        "proposed": ("1.14", "With re-fixing the hand leaves its comfortable range by at most {beyond} deg"),
     }
     return {
         identifier: _draw_history(recordings[case], text, config)
@@ -56,7 +56,8 @@ def _draw_history(recording: Recording, text: str, config: Config) -> Drawing:
     axes[1].semilogy(time, np.maximum(1e3 * near, 0.02), **style.LINES["book"])
     axes[1].set(xlabel="Time [s]", ylabel="To a nut [mm]", ylim=(0.1, 200))
     figure.align_ylabels(axes)
-    return style.title(figure, text)
+    beyond = style.at_most(float(np.rad2deg(np.abs(recording["roll"])).max() - comfort), 0)
+    return style.title(figure, text.format(beyond=beyond))
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

@@ -49,7 +49,7 @@ CLAIMS = (
         "The advantage over both is more obvious on the circle, after about 20 s.",
         _on_the_circle("force", "passive"),
         control=greater(f"{MOVING}.lead_excess_circle", f"{MOVING}.lead_excess_line"),
-        readings={"with the best of 40 gains for each law": _on_the_circle("tuned_force", "tuned_passive")},
+        readings={"with the best of as many gains for each law": _on_the_circle("tuned_force", "tuned_passive")},
         searched="printed and tuned gains, the bandwidth of the servo",
         note="By how much the rivals err more, on the line and on the circle: force control "
         "{balloon_movement.force_excess_line:.2f} and {balloon_movement.force_excess_circle:.2f} N, passive impedance "

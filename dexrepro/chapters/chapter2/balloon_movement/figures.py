@@ -16,13 +16,15 @@ FIGURES = {
     "2.9c": Figure(
         "Path of the partner's gripper on the simulated Baxter (synthetic operator): a line in three directions, then "
         "a lap of a circle, ours in place of the book's drawing.",
-        "The partner's path is a straight line followed by a circle.",
+        "The partner's path, a straight line followed by a circle.",
     ),
     "2.11": Figure(
-        "Simulated Baxter, synthetic operator, balloon as a spring of 150 N/m. (a), (b) Paths of both grippers under "
-        "the proposed law; (c) holding force under the three laws of the book's figure; (d) force errors "
-        "on the line (12 to 20 s) and on the circle (from 20 s), with the printed and with tuned gains (F: integral).",
-        "With printed gains the proposed law keeps the force closest to the desired one; with tuned gains all but tie.",
+        "Simulated Baxter, synthetic operator, balloon as a spring of {balloon_movement.stiffness:g} N/m. (a), (b) "
+        "Paths of both grippers under the proposed law; (c) holding force under the three laws of the book's figure; "
+        "(d) force errors on the line (12 to 20 s) and on the circle (from 20 s), with the printed and with tuned "
+        "gains (F: integral).",
+        "Paths of both grippers, holding forces of three laws over time, and bars of their errors with two sets of "
+        "gains.",
     ),
 }
 UNITS = {"reference": "m"}
@@ -108,8 +110,8 @@ def _draw_result(recordings: Recordings, metrics: AllMetrics, config: Config) ->
     bars.set_xticks(place, [BARS[case][0] for case in cases], fontsize=6.5)
     bars.set(ylabel="Force RMSE [N]", yscale="log", ylim=(0.01, 20))
     style.panel(bars, "d", "line (pale) and circle")
-    best = shown(metrics["proposed"]["rmse_circle"])
+    best = style.at_most(shown(metrics["proposed"]["rmse_circle"]), 2)
     return style.title(
         figure,
-        f"The proposed law holds {config.desired_force:g} N within {best:.2f} N rms on the circle (simulated Baxter)",
+        f"The proposed law holds {config.desired_force:g} N within {best} N rms on the circle (simulated Baxter)",
     )

@@ -15,10 +15,11 @@ FIGURES = {
         "Two arms of a Baxter robot face each other with a balloon between their grippers.",
     ),
     "2.10": Figure(
-        "Simulated Baxter, balloon as a spring of 150 N/m. (a), (b) Path of the follower's gripper from two starts; "
-        "(c), (d) contact force on it. Contact comes at y = 0.21 to 0.22 m (book: about 0.25 m; it shifts with the "
-        "balloon's size, which is not printed).",
-        "From both starts the follower reaches the same place and the force becomes 10 N along the holding line.",
+        "Simulated Baxter, balloon as a spring of {balloon_static.stiffness:g} N/m. (a), (b) Path of the follower's "
+        "gripper from two starts; (c), (d) contact force on it. Contact comes at y = "
+        "{balloon_static.off_100.contact_y:.2f} and {balloon_static.off_80.contact_y:.2f} m (farther out in the book; "
+        "it shifts with the balloon's size, which is not printed).",
+        "Paths of the follower's gripper from two starts, and the contact forces over time.",
     ),
 }
 UNITS = {"reference": "m"}
@@ -83,7 +84,7 @@ def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
         style.panel(axes, letter, _off(config, case))
     grid[1, 1].legend(ncols=3, loc="center right")
     ends = np.ptp([run["follower.tip"][-1] for run in recordings.values()], axis=0)
-    spread = 1e3 * np.linalg.norm(ends)
+    spread = style.at_most(1e3 * float(np.linalg.norm(ends)), 1)
     return style.title(
-        figure, f"From both starts the follower ends at one place, within {spread:.1f} mm (simulated Baxter)"
+        figure, f"From both starts the follower ends at one place, within {spread} mm (simulated Baxter)"
     )

@@ -13,7 +13,7 @@ FIGURES = {
         "with the exact signals of Traj. 1; vertical lines: where the explicit step reaches its limit, dt c t^4 = 2. "
         "(b) Fall of the Lyapunov function (2.19) for constant parameters, and the sum of its exact discrete "
         "decrements. Not in the book.",
-        "With time counted from the start the law diverges when its step limit is passed.",
+        "Prediction error over time for several rates, and a Lyapunov function beside the sum of its decrements.",
     ),
 }
 UNITS = {"lyapunov": "N² s", "change": "N² s", "exact_change": "N² s", "predicted_fall": "N² s", "error": "N"}
@@ -39,6 +39,6 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     right.set(xlabel="Time [s]", ylabel="$V(0) - V$ [$10^{-3}$]")
     right.legend()
     style.panels((left, right), "time from the start, equal rates", "constant parameters")
-    worst = 100 * max(metrics[case]["relative_difference"] or 0.0 for case in growing)
-    finding = f"Time from the start makes the law diverge within {worst:.0f} % of the predicted instant"
+    worst = style.at_most(100 * max(metrics[case]["relative_difference"] or 0.0 for case in growing), 0)
+    finding = f"Time from the start makes the law diverge within {worst} % of the predicted instant"
     return {"2.B": style.title(figure, finding)}

@@ -7,10 +7,10 @@ from dexrepro.report import style
 
 FIGURES = {
     "2.5": Figure(
-        "Holding force and lateral offset of the two tips with and without the regulation (2.8): (a) the arms start 80 "
-        "mm apart across the line, (b) the partner swings across it. The partner's movement and the object are known "
-        "to the follower here, as in the book, which shows the upper row.",
-        "With the regulation the force stays at 1 N; without it the force is too small, in case 2 at times zero.",
+        "Holding force and lateral offset of the two tips with and without the regulation (2.8): (a) the arms start "
+        "apart across the line, (b) the partner swings across it. The partner's movement and the object are known to "
+        "the follower here, as in the book, which shows the upper row.",
+        "Holding force and lateral offset over time with and without the regulation, in two cases.",
     ),
 }
 UNITS = {"reference": "m", "estimate": "m, N/m, m/s"}

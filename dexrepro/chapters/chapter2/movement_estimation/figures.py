@@ -13,14 +13,14 @@ FIGURES = {
     "2.6": Figure(
         "Contact force f_x on the assistive follower for three stiffnesses, initial estimate 30 N/m (Case 1; the "
         "book shows the same). Simulated: two planar arms, partner moving with a period of 20 s along the line.",
-        "The contact force settles at the desired 1 N for each of the three stiffnesses.",
+        "Contact force over time for three stiffnesses, with the desired force.",
     ),
     "2.7": Figure(
         "Estimated and true rest position, their difference and the force error for three periods of the partner's "
         "movement (Case 2). The estimate keeps the offset f_d (1/khat - 1/k_o), dashed, which vanishes only with f_d. "
         "The small sawtooth at sigma = 10 s has the period of the estimator's window, which is ours; dotted: time "
         "counted from the start, as printed, with rates that this allows.",
-        "The estimated rest position follows the true one up to a constant offset of about 5 mm.",
+        "Estimated and true rest position, their difference and the force error over time for three periods.",
     ),
 }
 UNITS = {"reference": "m", "rest_position": "m", "estimate": "m, N/m, m/s"}

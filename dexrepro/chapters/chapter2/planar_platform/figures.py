@@ -12,12 +12,12 @@ FIGURES = {
         "Force on the follower against its lateral offset, for an object that turns freely (central spring) and for "
         "one that keeps its direction (constant vector). The book sketches the first: a follower below its partner is "
         "pushed down, and (2.8) moves it up. The desired force is 1 N, the object 45 N/m.",
-        "With a central spring the lateral force has the sign of the offset; with a constant vector the opposite one.",
+        "Lateral force over the lateral offset for two models of the object.",
     ),
     "2.4": Figure(
         "(a), (b) The two planar arms in the printed initial poses; (c), (d) the leader's paths Traj. 1 and Traj. 2 "
         "relative to the start, as in the book.",
-        "Two three-link arms face each other with their tips half a metre apart.",
+        "Two three-link arms face each other.",
     ),
 }
 

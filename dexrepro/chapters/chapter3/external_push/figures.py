@@ -17,24 +17,24 @@ FIGURES = {
     "3.1": Figure(
         "Response of one observer channel to a step of external torque for four gains, with 1 - exp(-K t) dashed "
         "(computed). The book shows the block diagram.",
-        "The observer's response is that of a first-order lag with the time constant 1/K.",
+        "Response of the observer and of a first-order lag over time.",
     ),
     "3.11": Figure(
         "Force on the forearm, the external torque of the three joints it loads most (pale and wide: true; thin: "
         "observed; two of the true ones coincide), with the nominal model and with an exact one, and Dis_R, during a "
         "push of {external_push.push.force.1:g} N along y in reach 1. Simulated; the arm may touch box and lid, and "
         "does not. The book plots force, torque and distance.",
-        "The observed torque follows the true one with a small lag and the offset of the model's error.",
+        "Force, observed and true torques and the distance to the opening over time during a push, for two models.",
     ),
     "3.12": Figure(
         "Distance to the target and Dis_R during the same push with and without observer compensation and null-space "
         "torque (simulated).",
-        "A push moves the arm by millimetres; after its release the arm returns.",
+        "Distances to target and opening over time during a push, with and without compensation and null-space torque.",
     ),
     "3.B": Figure(
         "Observer gain: relative error of the observed torque over the push, without and with noise on the momentum "
         "(replayed from the recorded push with an exact model; ours, after the remark below Eq. (3.20)).",
-        "Without noise a larger gain is always better; with noise there is a best gain.",
+        "Error of the observer over its gain, with and without noise.",
     ),
 }
 UNITS = {

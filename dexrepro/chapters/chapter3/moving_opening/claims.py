@@ -27,7 +27,7 @@ CLAIMS = (
         "The arm tracks the moving remote centre in real time (Dis_R below 10 mm).",
         less(f"{MOVING}.track.moving_distance_max", 0.01),
         control=less(f"{MOVING}.once.moving_distance_max", 0.01),
-        readings={"told by a camera of 15 Hz, a picture late": less(f"{MOVING}.late.moving_distance_max", 0.01)},
+        readings={"told by a camera, a picture late": less(f"{MOVING}.late.moving_distance_max", 0.01)},
         where="3.6",
         note="In real time: from where the opening is now, without its path. The control is told once where it is "
         "({moving_opening.once.moving_distance_max:.3f} m); a picture late the arm is up to "

@@ -21,12 +21,12 @@ FIGURES = {
     "3.15": Figure(
         "Path of the moving remote centre, ours: the book draws its path without numbers. Seen from above and "
         "over time.",
-        "The centre of the opening runs through a figure of eight of 10 cm by 6 cm in 10 s.",
+        "The centre of the opening runs through a figure of eight.",
     ),
     "3.16": Figure(
         "Distance to the target and Dis_R while the opening moves (simulated; lid and box are collision bodies for the "
         "whole method). The law knows, without noise or delay, where the opening is, and not how fast it moves.",
-        "The arm follows the moving opening within a few millimetres.",
+        "Distance to the target and to the opening's centre over time while the opening moves.",
     ),
 }
 UNITS = {
@@ -90,9 +90,9 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     right.set(ylabel="$Dis_R$ [mm]", yscale="log", ylim=(1e-3, 2e3))
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=4)
     found = metrics["track"]
-    far, tip = 1e3 * found["moving_distance_max"], 1e3 * found["moving_error_max"]
+    far, tip = (style.at_most(1e3 * found[f"moving_{key}_max"], 1) for key in ("distance", "error"))
     return style.title(
-        figure, f"The arm follows the opening within {far:.1f} mm while its end point errs by {tip:.1f} mm"
+        figure, f"The arm follows the opening within {far} mm while its end point errs by at most {tip} mm"
     )
 
 

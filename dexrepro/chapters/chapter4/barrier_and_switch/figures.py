@@ -18,7 +18,7 @@ FIGURES = {
         "omega; E must not exceed 1. Below: E and the largest input component while the two-link arm draws the ellipse "
         "from an empty network (threshold 20, a dot a recorded sample), and its error with and without the robust "
         "term. The book sketches the three regions.",
-        "The switch hands over to the robust term only in the transient, and stays below 1 with the square inside.",
+        "The switching function for two readings, and its value, inputs and errors over time.",
     )
 }
 UNITS = {
@@ -91,17 +91,23 @@ COLUMNS = {
 
 # What a change turns: claim, case, metric, and the case whose number it is held against (None: the bound itself).
 TURNS = (
-    ("C4.01", "fixed network of width 10 with 39 times the gain", "rbf10_high_gain", "rmse_mm", "base"),
-    ("C4.01", "fixed network of width 2, equal effective gain", "rbf2", "rmse_mm", "base"),
-    ("C4.01", "fixed network of width 6, equal effective gain", "rbf6", "rmse_mm", "base"),
-    ("C4.01", "fixed network of width 10, equal effective gain", "rbf10", "rmse_mm", "base"),
+    (
+        "C4.01",
+        "fixed network of width {0.law.network.basis.width:g} with a gain of {0.law.network.gain:g}",
+        "rbf10_high_gain",
+        "rmse_mm",
+        "base",
+    ),
+    ("C4.01", "fixed network of width {0.law.network.basis.width:g}, equal effective gain", "rbf2", "rmse_mm", "base"),
+    ("C4.01", "fixed network of width {0.law.network.basis.width:g}, equal effective gain", "rbf6", "rmse_mm", "base"),
+    ("C4.01", "fixed network of width {0.law.network.basis.width:g}, equal effective gain", "rbf10", "rmse_mm", "base"),
     ("C4.02a", "fuzzy network, equal effective gain", "fuzzy", "rmse_mm", "base"),
     ("C4.02a", "fuzzy network, the same gamma for all methods", "fuzzy_common_gamma", "rmse_mm", "common_gamma"),
     ("C4.17a", "no enhancement, the same gain", "gaussians", "rmse_mm", "base"),
     ("C4.17a", "no enhancement, equal effective gain", "gaussians_equal_gain", "rmse_mm", "base"),
     ("C4.28", "a new node at the input, the same gain", "one_neighbour", "rmse_mm", "base"),
     ("C4.28", "a new node at the input, equal effective gain", "at_input", "rmse_mm", "base"),
-    ("C4.04", "ellipse starts 0.3 m from the arm", "start_outside", "max_usage", None),
+    ("C4.04", "ellipse starts {0.task.semi_axes[0]:g} m from the arm", "start_outside", "max_usage", None),
     ("C4.04", "radii scaled by the farthest node, factors 0.2 and 0.6", "scaled_small", "max_usage", None),
     ("C4.04", "radii scaled by the farthest node, factors 0.5 and 1.5", "scaled_large", "max_usage", None),
     ("C4.04", "no barrier", "no_barrier", "max_usage", None),
@@ -118,8 +124,8 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
         value = found[case].get(metric)
         limit = 1.0 if against is None else found[against].get(metric)
         holds = _holds(value, limit, below=against is None)
-        turns.append({"claim": claim, "change": change, "quantity": COLUMNS[metric], "value": value,
-                      "held against": limit, "claim holds": holds})  # fmt: skip
+        turns.append({"claim": claim, "change": change.format(config.cases[case]), "quantity": COLUMNS[metric],
+                      "value": value, "held against": limit, "claim holds": holds})  # fmt: skip
     return {"T4.B": by_case(found, COLUMNS), "T4.S": pd.DataFrame(turns)}
 
 

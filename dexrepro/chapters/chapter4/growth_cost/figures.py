@@ -15,7 +15,7 @@ FIGURES = {
         "number of nodes, for a growing network with enhancement, a lattice evaluated as a product and the same "
         "lattice by the plain formula. Times are of the machine that made the figure. The book reports that a broad "
         "network of 72 nodes replaces one of 16384.",
-        "Step time and memory grow in proportion to the nodes; a broad network of 72 nodes is far cheaper than 16384.",
+        "Step time and memory over the number of nodes for three networks, on logarithmic scales.",
     )
 }
 TABLES = {"T4.D": "Cost of one control step by network and number of nodes"}

@@ -49,7 +49,7 @@ CLAIMS = (
         less(f"{P}.reuse.max_usage", 1.0),
         control=less(f"{P}.no_barrier.max_usage", 1.0),
         credits="the proposed controller, that is, its barrier",
-        note="The bound, 0.21 m shrinking to 0.10 m, is so wide that the error takes "
+        note="The bound is so wide that the error takes "
         "{payload_transfer.reuse.max_usage:.0%} of it, {payload_transfer.no_barrier.max_usage:.0%} without the barrier "
         "and {payload_transfer.none.max_usage:.0%} without a network.",
     ),

@@ -22,8 +22,7 @@ FIGURES = {
         "II against the wider of the fixed networks of 16384 nodes with the same training, and the prescribed bound; "
         "below, the error of each trajectory for all methods, an integrator (one constant node) among them. Simulated "
         "Baxter arm with gravity compensation for the bare arm. The book shows the error of both methods.",
-        "Errors stay far inside the bound; the bars of the trained broad, the wide fixed and the constant network are "
-        "close.",
+        "Error over time of two networks within the bound, and bars of the error of each trajectory for all methods.",
     ),
 }
 UNITS = {

@@ -15,7 +15,7 @@ from dexrepro.chapters.chapter4.two_link import ELLIPSE
 from dexrepro.experiment import Config, Drawing, Drawings, Figure, Metrics, Recording
 from dexrepro.report import style
 
-ARM = "Two-link arm in PyBullet under the law's torque, gravity and 2 N at the tip. "
+ARM = "Two-link arm in PyBullet under the law's torque, gravity and {skill_reuse.task.force.1:g} N at the tip. "
 WEIGHTS = (
     ARM + "Weights of the Gaussians, one line a node, while the four strokes are learned one after another; above each "
     "panel how many exceed a tenth of the largest (joint 1). The book shows many small and few large weights."
@@ -25,7 +25,7 @@ FIGURES = {
         "(a) The four strokes that are learned, (b) the ellipse drawn with what was learned, (c, d) inputs of the "
         "network in the plane of the virtual acceleration, with nodes (dots) and the threshold distance around them "
         "(circles); dashed orange: nodes added on the ellipse. The book sketches the principle.",
-        "Nodes added on the ellipse lie along the transient at its start, outside the settled orbit.",
+        "Strokes, ellipse, and inputs and nodes of the network in the plane of the virtual acceleration.",
     ),
     "4.4": Figure(
         "The arm at the start of every run, rendered in its vertical plane, with strokes, ellipse (dashed), reach, "
@@ -37,24 +37,24 @@ FIGURES = {
         + "Above: 20 s of the ellipse from the centre, by fixed radial basis networks of two widths, a fuzzy network "
         "and the broad network, all after the same training and at equal effective gain. Below: the training of "
         "the broad network. The book compares one radial basis, one fuzzy and the broad network.",
-        "The broad network and the fuzzy network follow the ellipse closely; the narrow radial basis network does not.",
+        "Paths of four methods on the ellipse, and of the broad network on four strokes.",
     ),
     "4.6": Figure(
         ARM + "Tracking error on the ellipse after training, at equal effective gain: the component in y during the "
         "first 3 s (grey: prescribed bound; the start is cut) and the envelope of the error over the whole run, above "
         "for three thresholds, below against fixed and fuzzy networks. The book shows thresholds 20, 30 and 50 and one "
         "fixed network.",
-        "All errors stay inside the shrinking bound; the narrow radial basis network oscillates most.",
+        "Errors of six networks at the start with the bound, and their envelopes over the run, on a logarithmic scale.",
     ),
     "4.7": Figure(
         ARM
         + "Number of nodes for three thresholds while four strokes are learned and the ellipse is drawn; below, the "
         "first half second of each run. The book shows counts that grow faster for smaller thresholds.",
-        "Node counts step up at the first stroke and at the start of the ellipse and stay constant otherwise.",
+        "Number of nodes over time for three thresholds, with the first half second of each run.",
     ),
-    "4.8": Figure(WEIGHTS, "Weights for a threshold of 20 settle and ripple at the orbit's frequency."),
-    "4.9": Figure(WEIGHTS, "Weights for a threshold of 30 settle and ripple at the orbit's frequency."),
-    "4.10": Figure(WEIGHTS, "For a threshold of 50 a single node carries the whole estimate."),
+    "4.8": Figure(WEIGHTS, "Weights of the nodes over time while four strokes are learned, threshold 20."),
+    "4.9": Figure(WEIGHTS, "Weights of the nodes over time while four strokes are learned, threshold 30."),
+    "4.10": Figure(WEIGHTS, "Weights of the nodes over time while four strokes are learned, threshold 50."),
 }
 UNITS = {
     "error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²", "usage": "1",
@@ -194,7 +194,13 @@ def arm(recording: Recording, config: Config) -> Drawing:
     axes.plot(2 * np.cos(reach), 2 * np.sin(reach), color=style.PLAIN, linewidth=0.8)
     axes.annotate("reach", (1.9, -0.62), size=7, color=style.PLAIN, ha="right")
     axes.annotate("$g$", xy=(1.4, -0.85), xytext=(1.4, -0.55), ha="center", arrowprops={"arrowstyle": "->", "lw": 0.8})
-    axes.annotate("2 N", xy=(1.0, 0.55), xytext=(1.0, 0.25), ha="center", arrowprops={"arrowstyle": "->", "lw": 0.8})
+    axes.annotate(
+        f"{config.task.force[1]:g} N",
+        xy=(1.0, 0.55),
+        xytext=(1.0, 0.25),
+        ha="center",
+        arrowprops={"arrowstyle": "->", "lw": 0.8},
+    )
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=(0, 2), ylim=(-1, 1))
     return style.title(figure, "Every run starts at rest at the centre")
 
@@ -282,10 +288,10 @@ def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
     top.set(ylabel="Nodes [-]", xlabel="Time of strokes and ellipse [s]", ylim=(0, 16), xlim=(0, time[-1]))
     top.legend(loc="upper left", bbox_to_anchor=(0.0, 0.9))
     bottom[0].set(ylabel="Nodes at first [-]", ylim=(0, 16), yticks=(0, 5, 10, 15))
-    last = max(number(metrics[case]["last_node_s"]) for case in shown)
+    last = style.at_most(max(number(metrics[case]["last_node_s"]) for case in shown), 2)
     counts = ", ".join(str(metrics[case]["nodes"]) for case in shown)
     return style.title(
-        figure, f"A smaller threshold gives more nodes ({counts}), the last at most {last:.2f} s into the ellipse"
+        figure, f"A smaller threshold gives more nodes ({counts}), the last at most {last} s into the ellipse"
     )
 
 

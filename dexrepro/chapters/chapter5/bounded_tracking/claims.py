@@ -81,8 +81,8 @@ CLAIMS = (
             *(less(f"{TRACKING}.tuned.tip_rms", f"{TRACKING}.{pd}.tip_rms") for pd in ("pd_tuned", "pd_stiffest")),
             less(f"{TRACKING}.tuned_encoders.tip_rms", f"{TRACKING}.pd_stiffest_encoders.tip_rms"),
         ),
-        note="16 settings each, chosen on the letter a. The best PD gain, 30 N m/rad, is the largest of the 16: with "
-        "300 PD control errs by {bounded_tracking.pd_stiffest.tip_rms:.3f} mm against "
+        note="As many settings each, chosen on the letter a. The best PD gain is the largest of them: with ten times "
+        "as much PD control errs by {bounded_tracking.pd_stiffest.tip_rms:.3f} mm against "
         "{bounded_tracking.pd_tuned.tip_rms:.3f}, and the law with its untuned gains by "
         "{bounded_tracking.letter_w.tip_rms:.3f}; with encoders at a torque ripple of "
         "{bounded_tracking.pd_stiffest_encoders.torque_step:.2g} against "

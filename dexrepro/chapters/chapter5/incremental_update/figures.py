@@ -74,10 +74,10 @@ def _draw_cost(cost: pd.DataFrame, drift: pd.DataFrame) -> Drawing:
         right.plot(part.m, part.gap, label=f"{count} kernels", marker="o", ms=3, **style.LINES[line])
     right.set(yscale="log", xlabel="Added features m [-]", ylabel="Update minus anew,\nshare of the target [-]")
     right.legend()
-    ratio = (cost.anew / cost["update"]).iloc[-1]
+    ratio = style.at_least((cost.anew / cost["update"]).iloc[-1], 0)
     lost = " and ".join(str(count) for count, part in drift.groupby("kernels") if part.gap.iloc[-1] > LOST)
     end = f"; with {lost} kernels it loses the solution" if lost else ""
-    return style.title(figure, f"The update costs up to {ratio:.0f} times less{end}")
+    return style.title(figure, f"The update costs up to {ratio} times less{end}")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:

@@ -129,7 +129,7 @@ CLAIMS = (
         printed=limited_by_kernels(PRINTED_SIGN, "idmp60", "idmp30"),
         where="5.5.1, 5.5.4",
         beside=on_real_letters("C5.08"),
-        note="At the same number of weights, 70: 60 features on 5 kernels against 30 on 20. The control is a DMP with "
+        note="At the same number of weights: twice the features on a quarter of the kernels. The control is a DMP with "
         "as many weights, drawn anew.",
     ),
     Claim(

@@ -86,7 +86,7 @@ CLAIMS = (
                 "obstacle_crossing.printed_amplitude", within=0.5
             ),
         },
-        searched="goals at the height where the demonstration ends and at that of its start, 0.2 mm lower, where the "
+        searched="goals at the height where the demonstration ends and at that of its start, a little lower, where the "
         "amplitude vanishes; how near to the goal is there",
         credits="the changed goal g",
         where="(5.1), 5.5.3",

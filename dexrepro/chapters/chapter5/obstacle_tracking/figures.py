@@ -26,7 +26,7 @@ FIGURES = {
         "The arm lifts its pen over the stack and reaches the goal behind it.",
     ),
     "5.F": Figure(
-        "Share of the bound that the joint errors use (all 18 runs) and smallest distance of the tracked tip from the "
+        "Share of the bound that the joint errors use (all runs) and smallest distance of the tracked tip from the "
         "obstacle for every goal. Ours.",
         "Share of the bound used over time, and clearance of the tip for every goal.",
     ),

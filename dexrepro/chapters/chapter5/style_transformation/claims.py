@@ -73,11 +73,11 @@ CLAIMS = (
             },
             "other shapes of the letters": greater("style_transformation.shapes.early_order", 0.5),
         },
-        searched="initial kernels from 15 to 40, and 24 hands whose via points move by a tenth of the letters' size",
+        searched="initial kernels from 15 to 40, and hands whose via points move by a tenth of the letters' size",
         no_control="the order is a property of the shapes written, which the book shows and does not print",
         note="Distance left after 15 features: z {style_transformation.default.z.after15:.2f}, k "
         "{style_transformation.default.k.after15:.2f}, w {style_transformation.default.w.after15:.2f}, l "
-        "{style_transformation.default.l.after15:.2f}. Of 24 hands with other shapes "
+        "{style_transformation.default.l.after15:.2f}. Of the hands with other shapes "
         "{style_transformation.shapes.early_order:.0%} give the book's order; by chance a sixth would.",
     ),
     fig_5_6(

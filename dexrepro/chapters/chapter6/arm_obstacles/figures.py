@@ -20,12 +20,12 @@ FIGURES = {
     ),
     "6.4": Figure(
         "Simulated arm on the learned path at five instants (contacts off) and the smallest distance of the whole arm "
-        "to each box, below 15 cm. The book shows photographs.",
+        "to each box. The book shows photographs.",
         "Five pictures of the arm among the boxes, and its distance to each over time, on the learned path.",
     ),
     "6.5": Figure(
         "Simulated arm on the constrained path at five instants and the smallest distance of the whole arm to each "
-        "box, below 15 cm.",
+        "box.",
         "Five pictures of the arm among the boxes, and its distance to each over time, on the constrained path.",
     ),
 }

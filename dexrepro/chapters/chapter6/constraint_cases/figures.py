@@ -10,6 +10,7 @@ from dexrepro.report import style
 
 from .experiment import constraint_of
 
+CLOSE = 0.4  # s, shown in panel d
 FIGURES = {
     "6.A": Figure(
         "(a, b) V^c relative to its start and (c) the scaled error of the error dynamics under the consistent law for "
@@ -63,11 +64,11 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     inner.set(ylabel="$V^c(t)/V^c(0)$ [-]", yscale="log", ylim=(1e-6, 3), xlim=(-0.05, 1))
     outer.set(ylabel="$V^c(t)/V^c(0)$ [-]")
     right.set(ylabel="$|z_1|/H$ [-]", ylim=(0, None))
-    close.set(ylabel="$|z_1|/H$ [-]", xlim=(0, 0.4), ylim=(0.99, 1.04))
+    close.set(ylabel="$|z_1|/H$ [-]", xlim=(0, CLOSE), ylim=(0.99, 1.04))
     parts = [axes.get_legend_handles_labels() for axes in (inner, outer, close)]
     found = {label: handle for handles, labels in parts for handle, label in zip(handles, labels)}
     figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=3)
-    texts = ("V, inside", "V, outside", "scaled error and bound", "second asymmetric case, first 0.4 s")
+    texts = ("V, inside", "V, outside", "scaled error and bound", f"second asymmetric case, first {CLOSE:g} s")
     style.panels((inner, outer, right, close), *texts)
     hit = metrics.get("asymmetric_outside_printed", {}).get("hit_time")
     slow = f"outside V falls by {min(fallen):.1f} to {max(fallen):.1f} % in {config.duration:g} s" if fallen else ""

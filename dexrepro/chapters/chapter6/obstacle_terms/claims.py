@@ -28,8 +28,8 @@ CLAIMS = (
         readings={
             "offsets of a millionth of a centimetre and more": less(f"{TERMS}.centroid.nearly_aligned_distance", 0.1)
         },
-        note="For exact alignment with a point only: from an offset of 1e-6 cm on the path passes at "
-        "{obstacle_terms.centroid.nearly_aligned_distance:.2f} cm. The potential of [39], the control, keeps "
+        note="For exact alignment with a point only: from an offset of a millionth of a centimetre on the path passes "
+        "at {obstacle_terms.centroid.nearly_aligned_distance:.2f} cm. The potential of [39], the control, keeps "
         "{obstacle_terms.potential.aligned_distance:.2f} cm off even an aligned point.",
     ),
     fig_6_d(
@@ -50,7 +50,7 @@ CLAIMS = (
         "{obstacle_terms.boundary.bars_passed_20mm:.0f} with its authors' parameters and "
         "{obstacle_terms.boundary.bars_tuned_20mm:.0f} with the best of 20 settings (boundary points; the centroid "
         "{obstacle_terms.centroid.bars_tuned_20mm:.0f}); [39] stops before them "
-        "({obstacle_terms.potential.bars_tuned_20mm:.0f}). The control has bars of 3 mm.",
+        "({obstacle_terms.potential.bars_tuned_20mm:.0f}). The control has the narrowest bars.",
     ),
     fig_6_d(
         "C6.28",

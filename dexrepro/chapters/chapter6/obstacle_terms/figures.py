@@ -34,7 +34,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
                 "goal error, standard [cm]": numbers["goal_error"],
                 "clearance, tuned [cm]": numbers.get("tuned_clearance"),
                 "settings of 20 that pass": numbers.get("settings_that_pass"),
-                "bars of 20 mm passed, best setting, of 5": numbers.get("bars_tuned_20mm"),
+                "bars of 2 cm passed, best setting, of 5": numbers.get("bars_tuned_20mm"),
                 "operations a step": numbers["operations"],
             }
         )

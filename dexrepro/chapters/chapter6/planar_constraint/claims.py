@@ -56,7 +56,7 @@ CLAIMS = (
         "The distance to the reference is largest at the arc and vanishes quickly after it.",
         at_the_arc("printed", "feedforward"),
         control=at_the_arc("none"),
-        note="Back within 0.05 cm {planar_constraint.feedforward.settle_after_arc:.2f} s after the arc; the primitive "
+        note="Back {planar_constraint.feedforward.settle_after_arc:.2f} s after the arc; the primitive "
         "without extra term, the control, after {planar_constraint.none.settle_after_arc:.2f} s. Void for the "
         "consistent law, which never leaves the reference.",
     ),
@@ -66,7 +66,7 @@ CLAIMS = (
         kept("consistent", "tau1_consistent", "consistent_off", "consistent_fast"),
         control=kept("consistent_no_barrier"),
         readings={
-            "from starts without a velocity error alone, as in 6.4": kept(
+            "from starts without a velocity error alone, as in Sect. 6.4": kept(
                 "consistent", "tau1_consistent", "consistent_off"
             ),
             "as printed in (6.15), tau = duration": kept("printed"),
@@ -75,8 +75,10 @@ CLAIMS = (
             "with the recorded acceleration (6.12), tau = 1 s": kept("tau1_feedforward"),
         },
         credits=BARRIER,
-        searched="three readings of the acceleration, tau of 1 s and of the segment's duration, starts up to 0.45 cm "
-        "off and with a velocity error, the barrier's weight 1 and H^2, steps of 1 to 0.1 ms",
+        searched=(
+            "three readings of the acceleration, tau of 1 s and of the segment's duration, starts off the reference "
+            "and with a velocity error, the barrier's weight 1 and H^2, steps down to a tenth of ours"
+        ),
         where="6.3.3",
         note="In (6.21) V stays finite from any start inside; weighted by 1 in squared centimetres the barrier is "
         "thinner than a step, so that the path leaves the tube where it would leave it without barrier: from a "
@@ -163,8 +165,9 @@ CLAIMS = (
         searched="three readings of the acceleration",
         where="(6.21)",
         note="The consistent law alone fulfils the assumption of the proof; under it V rises in no step, nor does it "
-        "from a start 0.45 cm off; as printed in up to {planar_constraint.printed.v_rises:.0f} steps, with the "
-        "recorded acceleration in up to {planar_constraint.feedforward.v_rises:.0f}.",
+        "from a start {planar_constraint.cases.consistent_off.start.offset:g} cm off; as printed in up to "
+        "{planar_constraint.printed.v_rises:.0f} steps, with the recorded acceleration in up to "
+        "{planar_constraint.feedforward.v_rises:.0f}.",
     ),
     fig_6_2d(
         "C6.48",
@@ -183,6 +186,8 @@ CLAIMS = (
         control=kept("junction_outside"),
         credits="the junction condition",
         where="6.3.1",
-        note="0.4 cm off at the start, with margins of 0.5 and, the control, 0.3 cm.",
+        note="{planar_constraint.cases.junction.start.offset:g} cm off at the start, with margins of "
+        "{planar_constraint.cases.junction.cdmp.margin:g} and, the control, "
+        "{planar_constraint.cases.junction_outside.cdmp.margin:g} cm.",
     ),
 )

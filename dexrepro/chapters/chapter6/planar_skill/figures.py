@@ -79,14 +79,16 @@ def _demonstrations(axes: Any, lines: Any, numbers: Any, settings: Config) -> st
 def _learned(axes: Any, lines: Any, numbers: Any, settings: Config) -> str:
     axes.plot(*lines["first"].T, color=style.BOOK, label="sub-skill 1")
     axes.plot(*lines["second"].T, color=style.EXTRA[0], linestyle="-.", label="sub-skill 2")
-    return f"The learned path cuts {-numbers['clearance_new_max']:.2f} cm or more\ninto the new block"
+    depth = style.at_least(-numbers["clearance_new_max"], 2)
+    return f"The learned path cuts {depth} cm or more\ninto the new block"
 
 
 def _spline(axes: Any, lines: Any, numbers: Any, settings: Config) -> str:
     axes.plot(*lines["first"].T, color=style.BOOK, label="sub-skill 1")
     axes.plot(*lines["reference"].T, color="black", linewidth=0.8, label="spline")
     axes.plot(*lines["reserved"].T, color=style.EXTRA[0], linestyle="-.", label="kept of sub-skill 2")
-    return f"The spline reference clears everything\nby {numbers['clearance_reference_min']:.2f} cm"
+    room = style.at_least(numbers["clearance_reference_min"], 2)
+    return f"The spline reference clears everything\nby {room} cm or more"
 
 
 def _extended(axes: Any, lines: Any, numbers: Any, settings: Config) -> str:

@@ -188,8 +188,8 @@ def _draw_paths(run: Recording, settings: Config) -> Drawing:
              "original": {**dark, "linestyle": ":"}}  # fmt: skip
     style.legend_below(figure, names)
     moved = np.linalg.norm(joints - original, axis=-1).max(axis=0)
-    shoulder, elbow, wrist = moved.max(axis=0)
-    text = f"elbows by up to {elbow:.0f} cm, wrists by {wrist:.0f} cm, shoulders by {shoulder:.0f} cm"
+    shoulder, elbow, wrist = (style.at_most(value, 0) for value in moved.max(axis=0))
+    text = f"elbows by up to {elbow} cm, wrists by {wrist} cm, shoulders by {shoulder} cm"
     return style.title(figure, f"The constraints move {text}")
 
 

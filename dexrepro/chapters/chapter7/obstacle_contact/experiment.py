@@ -12,9 +12,18 @@ from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.humans.reaching import Obstacle
 from dexrepro.measures import rms
 from dexrepro.physics.elements import Push
+from dexrepro.physics.world import World
 from dexrepro.robots.pen_arm import pen_arm_tip
 
 RATE = 200.0
+
+
+def scene(config: Config) -> World:
+    """The arm, the board and the stack, which is taller than the arm was told."""
+    world = desk.build(config, desk.to_robot(np.array([*config.task.start, 0.0])), contacts=True)
+    stack = Obstacle(config.task.obstacle, config.task.height + config.rise, config.scene.cube)
+    desk.furnish(world, stack, cube=False)
+    return world
 
 
 def simulate(config: Config, rng: Rng) -> Recording:

@@ -16,7 +16,7 @@ from .experiment import paths_of, traces_of
 
 FIGURES = {
     "7.4": Figure(
-        "The simulated platform: desktop arm with finger handle, board of 21 x 13 cm, four cubes of 2 cm as obstacle, "
+        "The simulated platform: desktop arm with finger handle, a board, four cubes of 2 cm as obstacle, "
         "start and goal (blue). The book shows a photograph of a joystick.",
         "A small arm over a board with a stack of cubes.",
     ),

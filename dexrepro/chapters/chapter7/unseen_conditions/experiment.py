@@ -89,7 +89,8 @@ def unseen(config: Config, learned: skills.Skills, known: list[skills.Condition]
 def fuzzy(x: dict[str, float], reactions: np.ndarray, known: list[skills.Condition], config: Config) -> np.ndarray:
     whole = skills.fuzzy_system(config)
     rules = [dict(zip(("distance", "height", "direction"), c.labels)) for c in known]
-    return FuzzySystem(whole.sets, rules).blend(reactions, **x)
+    weights = whole.weights and [whole.weights[whole.rules.index(rule)] for rule in rules]
+    return FuzzySystem(whole.sets, rules, weights).blend(reactions, **x)
 
 
 def nearest(

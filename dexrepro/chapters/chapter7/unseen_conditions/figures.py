@@ -55,7 +55,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         panel.set_ylabel("RMS error [cm]")
         style.panel(panel, letter, text)
     fuzzy, nearest = (
-        f"{10 * values[f'unseen_{name}']:.1f} mm, {values[f'touches_{name}']:.0%} touch"
+        f"{10 * values[f'unseen_{name}']:.1f} mm, {100 * values[f'touches_{name}']:.0f} % touch"
         for name in ("fuzzy", "nearest")
     )
     finding = f"Unseen conditions: fuzzy rules err by {fuzzy}; the nearest demonstration by {nearest}"

@@ -44,7 +44,7 @@ CLAIMS = (
         control=_inside("orbit_left_fuzzy"),
         note="The control is a network that does not cover the path: its bound is violated at "
         "{circle_tracking.orbit_left_fuzzy.violated_at:.3f} s. Elbow-up. Elbow-down with rate 1 it holds only for a "
-        "sampling time far below 1 ms (E8.01).",
+        "sampling time far below {circle_tracking.step:g} s (E8.01).",
     ),
     fig_8_6(
         "C8.02",
@@ -67,7 +67,9 @@ CLAIMS = (
         "C8.02t",
         "With width and rates of each network the best of a search, the broad network still has the smaller error.",
         _better("tuned_broad", "tuned_fuzzy"),
-        searched="widths from 0.05 to 1.5 m by rates from 0.3 to 8 times ours, in steps of 1.4 until a bound is left",
+        searched=(
+            "widths from half to fifteen times ours by rates from a third to eight times ours, until a bound is left"
+        ),
         note="Under friction. The wider, the better, until the Gaussians are flat over the circle and each network is "
         "an integrator; then the rate decides, up to where the first transient leaves a bound. There the broad network "
         "bears a gain of {circle_tracking.tuned_broad.early_gain:.0f} and errs by "

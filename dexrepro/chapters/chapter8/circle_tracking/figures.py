@@ -217,9 +217,9 @@ _TUNED, _FRICTION = ("broad", "fuzzy"), ("friction_broad", "friction_fuzzy")
 _MATCHED, _NARROW = ("broad", "fuzzy_matched"), ("narrow_broad", "narrow_fuzzy_matched")
 _STATIC, _INTEGRAL = ("friction_broad", "friction_hinf"), ("friction_broad", "friction_hinf_integral")
 VARIANTS = (
-    Variant("C8.02", "Gaussians of 0.05 m", "early_x", ("narrow_broad", "narrow_fuzzy"), _TUNED),
-    Variant("C8.02", "Gaussians of 0.3 m, x", "early_x", ("wide_broad", "wide_fuzzy"), _TUNED),
-    Variant("C8.02", "Gaussians of 0.3 m, y", "early_y", ("wide_broad", "wide_fuzzy"), _TUNED),
+    Variant("C8.02", "Gaussians of {0.networks.widths[0]:g} m", "early_x", ("narrow_broad", "narrow_fuzzy"), _TUNED),
+    Variant("C8.02", "Gaussians of {0.networks.widths[0]:g} m, x", "early_x", ("wide_broad", "wide_fuzzy"), _TUNED),
+    Variant("C8.02", "Gaussians of {0.networks.widths[0]:g} m, y", "early_y", ("wide_broad", "wide_fuzzy"), _TUNED),
     Variant("C8.02", "equal adaptation gain", "early_x", _MATCHED, _TUNED),
     Variant("C8.02", "without cos and sin", "early_x", ("broad_plain", "fuzzy"), _TUNED),
     Variant("C8.02", "the grid with cos and sin", "early_x", ("broad", "fuzzy_enhanced"), _TUNED),
@@ -228,11 +228,19 @@ VARIANTS = (
     Variant("C8.02", "tanh for the sign, x", "early_x", ("smooth_broad", "smooth_fuzzy"), _TUNED),
     Variant("C8.02", "tanh for the sign, y", "early_y", ("smooth_broad", "smooth_fuzzy"), _TUNED),
     Variant("C8.02", "no gravity, rate 1", "early_x", ("horizontal_broad", "horizontal_fuzzy"), _TUNED),
-    Variant("C8.02", "m = 3, beta_1 = 0.5", "early_y", ("neighbours_3", "fuzzy"), _TUNED),
-    Variant("C8.03", "Gaussians of 0.05 m, x", "early_x", _NARROW, _MATCHED),
-    Variant("C8.03", "Gaussians of 0.05 m, y", "early_y", _NARROW, _MATCHED),
-    Variant("C8.01", "elbow-down, rate 1, step 1 ms", "bound_used", ("down_unit", 1.0), ("broad_unit", 1.0)),
-    Variant("C8.01", "elbow-down, rate 1, step 0.01 ms", "bound_used", ("down_unit_fine", 1.0), ("broad_unit", 1.0)),
+    Variant(
+        "C8.02",
+        "m = {0.networks.neighbours}, beta_1 = {0.networks.placement:g}",
+        "early_y",
+        ("neighbours_3", "fuzzy"),
+        _TUNED,
+    ),
+    Variant("C8.03", "Gaussians of {0.networks.widths[0]:g} m, x", "early_x", _NARROW, _MATCHED),
+    Variant("C8.03", "Gaussians of {0.networks.widths[0]:g} m, y", "early_y", _NARROW, _MATCHED),
+    Variant("C8.01", "elbow-down, rate 1, step {0.step:g} s", "bound_used", ("down_unit", 1.0), ("broad_unit", 1.0)),
+    Variant(
+        "C8.01", "elbow-down, rate 1, step {0.step:g} s", "bound_used", ("down_unit_fine", 1.0), ("broad_unit", 1.0)
+    ),
     Variant("C8.07", "rate 1, x", "early_x", ("friction_broad_unit", "friction_fuzzy_unit"), _FRICTION),
     Variant("C8.07", "equal adaptation gain, x", "early_x", ("friction_broad", "friction_fuzzy_matched"), _FRICTION),
     Variant("C8.08", "H-infinity with integral action", "early_x", _INTEGRAL, _STATIC),
@@ -250,7 +258,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     return {
         "T8.1": _parameters(config),
         "T8.A": by_case(metrics, columns, recordings),
-        "T8.Sa": sensitivity_table(VARIANTS, metrics, columns),
+        "T8.Sa": sensitivity_table(VARIANTS, metrics, columns, config),
     }
 
 

@@ -33,7 +33,7 @@ FIGURES = {
         "Both components of the gain over time, with the optimum and the regulator's.",
     ),
     "8.C": Figure(
-        "Final compression of sponges of 100 to 1000 N/m under the optimal gain and under the regulator with the "
+        "Final compression of sponges of several stiffnesses under the optimal gain and under the regulator with the "
         "wrong model, in closed form (lines) and simulated (marks). Not in the book.",
         "Final compression over the stiffness of the sponge under the optimal gain and under the regulator.",
     ),
@@ -177,7 +177,7 @@ def _draw_stiffness(recordings: Recordings, metrics: Any, config: Config) -> Dra
     crossing = metrics["summary"]["crossing_stiffness"]
     style.event(axes, crossing, f" {crossing:.0f} N/m")
     axes.set(xlabel="Stiffness of the sponge [N/m]", ylabel="Final compression [mm]", ylim=(0, 50))
-    axes.set_xticks([100, 200, 500, 1000], ["100", "200", "500", "1000"])
+    axes.set_xticks(ticks := [100, 200, 500, 1000], map(str, ticks))
     axes.minorticks_off()
     axes.legend(loc="lower left")
     return style.title(figure, f"Below {crossing:.0f} N/m the learned law presses more")
@@ -185,15 +185,25 @@ def _draw_stiffness(recordings: Recordings, metrics: Any, config: Config) -> Dra
 
 _BASE = ("learned", "lqr")
 VARIANTS = (
-    Variant("C8.17", "sponge of 150 N/m", "final_compression", ("soft_learned", "soft_lqr"), _BASE),
-    Variant("C8.17", "sponge of 800 N/m", "final_compression", ("firm_learned", "firm_lqr"), _BASE),
+    Variant("C8.17", "sponge of {0.sponge.stiffness:g} N/m", "final_compression", ("soft_learned", "soft_lqr"), _BASE),
+    Variant("C8.17", "sponge of {0.sponge.stiffness:g} N/m", "final_compression", ("firm_learned", "firm_lqr"), _BASE),
     Variant("C8.17", "peak in place of the end", "peak_compression", _BASE, ("learned_end", "lqr_end")),
     Variant("C8.17", "printed model, force on the environment", "final_compression",
             ("learned", "lqr_printed_environment"), _BASE),
     Variant("C8.16", "printed model, force on the robot", "bound_used", ("lqr_printed", 1.0), ("lqr", 1.0)),
     Variant("C8.16", "no gravity compensation", "bound_used", ("uncompensated", 1.0), ("learned", 1.0)),
-    Variant("C8.16", "control at 200 Hz", "bound_used", ("at_200_hz", 1.0), ("learned", 1.0)),
-    Variant("C8.16", "control at 50 Hz as printed", "bound_used", ("at_50_hz", 1.0), ("learned", 1.0)),
+    Variant("C8.16", "{0.control_period:g} s between samples", "bound_used", ("at_200_hz", 1.0), ("learned", 1.0)),
+    Variant((
+        "C8.16"
+    ), (
+        "{0.control_period:g} s between samples, as printed"
+    ), (
+        "bound_used"
+    ), ((
+        "at_50_hz"
+    ), 1.0), ((
+        "learned"
+    ), 1.0)),
 )  # fmt: skip
 
 
@@ -216,7 +226,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     }
     tables = {
         "T8.E": pd.DataFrame(rows),
-        "T8.Sc": sensitivity_table(VARIANTS, {**metrics, **ends}, columns),
+        "T8.Sc": sensitivity_table(VARIANTS, {**metrics, **ends}, columns, config),
     }
     if "learned" in recordings:
         tables["T8.F"] = learning_study.headed(recordings["learned"].frames["iterates"], "N/m")

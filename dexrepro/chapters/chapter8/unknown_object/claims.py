@@ -121,8 +121,8 @@ CLAIMS = (
         "No knowledge of the environment is needed: the gain is learned with the surface found by touch.",
         every(less(f"{OBJECT}.soft.surface_error", 0.1), less(f"{OBJECT}.soft.gain_error_x", 0.01)),
         control=less(f"{OBJECT}.absolute.gain_error_x", 0.01),
-        note="The surface position is needed and comes from the first contact force [mm]; with 5 mm of error K_x is "
-        "{unknown_object.soft.surface_low_gain_x:.3f} or {unknown_object.soft.surface_high_gain_x:.3f} N/m in place of "
-        "{unknown_object.soft.gain_x:.3f}.",
+        note="The surface position is needed and comes from the first contact force [mm]; with "
+        "{unknown_object.noise.surface.1:g} m of error K_x is {unknown_object.soft.surface_low_gain_x:.3f} or "
+        "{unknown_object.soft.surface_high_gain_x:.3f} N/m in place of {unknown_object.soft.gain_x:.3f}.",
     ),
 )

@@ -115,7 +115,9 @@ def _draw_scene(recordings: Recordings, metrics: Any, config: Config) -> Drawing
     (cx, cy), radius = config.path.centre, config.path.radius
     axes.plot(cx - radius * np.cos(angle), cy + radius * np.sin(angle), **style.LINES["reference"])
     first, second = config.arm.lengths
-    for time, line, name in zip(times, ("plain", "rival", "book"), ("0 s", f"{times[1]:.1f} s, contact", "15 s")):
+    for time, line, name in zip(
+        times, ("plain", "rival", "book"), ("start", f"{times[1]:.1f} s, contact", f"{times[2]:g} s")
+    ):
         q = run["arm.position"][int(np.searchsorted(run.time, time))]
         elbow = first * np.array([np.cos(q[0]), np.sin(q[0])])
         tip = elbow + second * np.array([np.cos(q.sum()), np.sin(q.sum())])
@@ -251,7 +253,10 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
                "gain_x": "K_x [N/m]", "gain_s": "K_s [N]", "gain_error_x": "error of K_x [-]",
                "gain_error_s": "error of K_s [-]", "iterations": "iterations",
                "violated_at": "violated at [s]"}  # fmt: skip
-    tables = {"T8.B": by_case(metrics, columns, recordings), "T8.Sb": sensitivity_table(VARIANTS, metrics, columns)}
+    tables = {
+        "T8.B": by_case(metrics, columns, recordings),
+        "T8.Sb": sensitivity_table(VARIANTS, metrics, columns, config),
+    }
     if "soft" in recordings:
         frames = recordings["soft"].frames
         tables["T8.2"] = learning_study.headed(frames["iterates"], "N")

@@ -1,0 +1,198 @@
+"""Whether it still holds: stored numbers, another engine, other choices of what the book leaves open."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from dexrepro.commands import FAILED, OK, SHOWN, WRONG, command, option, out, say, warn
+from dexrepro.commands.run import launch
+from dexrepro.errors import InputError
+from dexrepro.keys import SELECTION
+
+if TYPE_CHECKING:
+    from dexrepro.baselines import ChapterReport
+
+
+@command(
+    "compare results with the stored baselines, simulate nothing", (*SELECTION, "case", "workers"),
+    option("--json", help="for programs, see docs/schemas"),
+    option("--update", help="run, perturb, and store new baselines"),
+    option("--accept", nargs="+", default=[], metavar="ID", help="claims whose verdict may change"),
+)  # fmt: skip
+def check_command(options: argparse.Namespace) -> int:
+    """Exit status 0: same; 1: drift; 2: results missing."""
+    from dexrepro import baselines
+    from dexrepro.selection import existing, quoted, selected
+
+    numbers, only, results, workers, extra = selected(options.selection, "check")
+    case = next((quoted(f"case={value}") for value in extra.values()), None)
+    if options.update:
+        for number in numbers:
+            for line in baselines.update_chapter(number, results, only, accept=options.accept, workers=workers):
+                say(line)
+        return OK
+    try:
+        if case:
+            reports = [baselines.check_cases(number, existing(results), only, case) for number in numbers]
+        else:
+            reports = [baselines.check_chapter(number, existing(results), only) for number in numbers]
+    except baselines.ResultsMissing as missing:
+        warn(missing)
+        return WRONG
+    ok = all(report.ok for report in reports)
+    if options.json:
+        print(json.dumps({"ok": ok, "chapters": list(map(asdict, reports))}, indent=1))
+    else:
+        for report in reports:
+            _print_check(report)
+    return OK if ok else FAILED
+
+
+def _print_check(report: ChapterReport) -> None:
+    changed = [claim for claim in report.claims if claim.id in report.verdict_changed]
+    out.print(
+        f"chapter {report.chapter}: {report.compared} metrics compared, {len(report.drifted)} drifted, "
+        f"{len(report.missing)} missing, {len(report.new)} new, {len(report.skipped)} skipped; {len(report.claims)} "
+        f"claims, {len(changed)} verdicts changed; {report.tables} tables, {len(report.tables_changed)} differences"
+    )
+    lines = []
+    for entry in report.drifted:
+        tolerance = entry.atol + entry.rtol * abs(entry.baseline or 0)
+        lines.append(f"{entry.name} = {entry.value}, stored {entry.baseline} +- {tolerance:.3g}")
+    for kind, names in {"missing": report.missing, "new": report.new}.items():
+        more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+        lines += [f"{kind}: {', '.join(names[:SHOWN])}{more}"] if names else []
+    lines += [f"{claim.id}: {claim.verdict or 'missing'}, stored: {claim.expected or 'none'}" for claim in changed]
+    lines += report.tables_changed[:SHOWN]
+    lines += [f"{name} has a baseline, and no such experiment exists" for name in report.unknown]
+    lines += [f"out of date: {text}" for text in report.outdated]
+    for line in lines:
+        say(f"  {line}")
+
+
+@command(
+    "run the book under MuJoCo, too, and compare", (*SELECTION, "workers"),
+    option("--update", help="renew the table that is shipped"),
+)  # fmt: skip
+def crosscheck_command(options: argparse.Namespace) -> int:
+    """Run what simulates arms under the other engine; say which numbers and verdicts differ."""
+    from dexrepro import crosscheck
+    from dexrepro.selection import selected
+
+    numbers, only, results, workers, _ = selected(options.selection, "crosscheck")
+    target = crosscheck.table(results, options.update)
+    for number in numbers:
+        for item in crosscheck.run(number, only, results, workers):
+            crosscheck.keep([item], target)
+            known = [entry for entry in item.metrics if entry.spread]
+            turned = [f"{key} {' under PyBullet, '.join(item.claims[key])} under MuJoCo" for key in item.turned]
+            say(
+                f"{item.experiment}: {item.compared} numbers, {len(item.metrics)} outside their tolerance, "
+                f"{sum(entry.matters for entry in known)} of the {len(known)} that a study has outside its range, too; "
+                f"{len(item.claims)} claims, {len(turned)} turn" + "".join(f"\n  {text}" for text in turned)
+            )
+    say(target)
+    return OK
+
+
+@command(
+    "how often claims hold when the unprinted varies",
+    (*SELECTION, "case", "claim", "samples", "hours", "engine", "jobs", "workers"),
+    option("--update", help="renew the study that is shipped"),
+    option("--confirm", help="carry samples over a change of code: two run again"),
+)  # fmt: skip
+def study_command(options: argparse.Namespace) -> int:
+    """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=N] [hours=H] [jobs=N hydra/launcher=...]``."""
+    from dexrepro import study
+    from dexrepro.config import check_engine
+    from dexrepro.physics.engine import default
+    from dexrepro.selection import selected
+
+    if any(text.startswith(("jobs=", "hydra")) for text in options.selection):
+        return _study_jobs(options)
+    numbers, only, results, workers, values = selected(options.selection, "study")
+    samples, hours = _samples(values.get("samples")), _hours(values.get("hours"))
+    check_engine(engine := values.get("engine", default()))
+    for number in numbers:
+        for name in study.experiments_of(number, only, values.get("claim")):
+            if options.confirm:
+                carried, other = study.confirm(number, name, results, options.update)
+                differ = f"; other numbers than before: {', '.join(other)}" if other else ""
+                say(f"{name}: {carried} cases of samples carried over{differ}")
+                continue
+            try:
+                cases = study.cases_of(number, name, values["case"].strip("[]")) if "case" in values else ()
+                if cases and options.update:
+                    raise InputError(f"case = {values['case']} is not allowed with --update: what is shipped is whole")
+                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update,
+                                 engine=engine, only=cases)  # fmt: skip
+            except study.SamplesFailed as error:
+                warn(error)
+                return FAILED
+            _print_study(name, path, results)
+    return OK
+
+
+def _samples(text: str | None) -> int | None:
+    if text is not None and not (text.isdecimal() and 1 <= int(text) <= 1024):
+        raise InputError(f"samples = {text} is not allowed: it must be a whole number of 1 or greater, 1024 at most")
+    return int(text) if text else None
+
+
+def _hours(text: str | None) -> float | None:
+    with suppress(ValueError):
+        if text is None or (math.isfinite(float(text)) and float(text) > 0):
+            return float(text) if text else None
+    raise InputError(f"hours = {text} is not allowed: it must be a number greater than 0")
+
+
+def _study_jobs(options: argparse.Namespace) -> int:
+    """A study by jobs of a Hydra launcher, which share its samples."""
+    from dexrepro import study
+    from dexrepro.selection import selected
+
+    values = dict(text.partition("=")[::2] for text in options.selection)
+    jobs = values.pop("jobs", "")
+    if not jobs.isdigit() or int(jobs) < 1:
+        raise InputError(f"jobs = {jobs or 'null'} is not allowed: it must be a whole number of 1 or greater")
+    launcher = [f"{key}={value}" for key, value in values.items() if key.startswith("hydra")]
+    words = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
+    numbers, only, folder, _, _ = selected(words, "study")
+    _samples(values.get("samples")), _hours(values.get("hours"))
+    names = [name for number in numbers for name in study.experiments_of(number, only, values.get("claim"))]
+    selection = ",".join(json.dumps(text) for text in words)
+    results = [text for text in words if text.startswith("results=")]
+    status = launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
+    if options.update and status == OK:
+        return study_command(argparse.Namespace(selection=words, update=True, confirm=False))
+    for name in names:
+        if (path := study.summary_file(name, folder)).exists():
+            _print_study(name, path, folder)
+    return status
+
+
+def _study_job(config: Any) -> None:
+    from dexrepro.sweep import JobFailed, enter_launch_folder
+
+    enter_launch_folder()
+    if study_command(argparse.Namespace(selection=["workers=1", *config.selection], update=False, confirm=False)) != OK:
+        raise JobFailed("a process was killed; the same command completes what is missing")
+
+
+def _print_study(name: str, path: Path, results: Path) -> None:
+    from dexrepro.report import studies
+    from dexrepro.storage import read_json
+
+    summary = read_json(path)
+    drawing = studies.save(summary, results / "studies" / f"{name}.svg")
+    say(f"{name}: {path}, drawn in {drawing}")
+    for claim, row in summary["claims"].items():
+        interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
+        most = f", follows {row['parameter']} most" if row["parameter"] else ""
+        say(f"  {claim}: holds in {row['holds']} of {row['samples']} ({interval}), {row['word']}{most}")

@@ -1,0 +1,117 @@
+"""Laws: one written to begin with, one tuned, those of a folder beside the book's."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from dexrepro.commands import OK, command, option, out, say
+from dexrepro.errors import InputError, folder_named
+
+
+@command(
+    "search a case's parameters for the best value of a metric",
+    ("case", "minimise", "maximise", "budget", "results", "workers"),
+    more="\n  law.KEY=LOW..HIGH       a parameter to search; else those of the law that declare a range"
+    "\n  EXPERIMENT.key=value    what shall be another value throughout, as for dexrepro run",
+)  # fmt: skip
+def tune_command(options: argparse.Namespace) -> int:
+    """``dexrepro tune case=EXPERIMENT.CASE minimise=METRIC budget=N [law.gain=0.01..0.1 …]``."""
+    from dexrepro import tune
+    from dexrepro.selection import quoted
+
+    known, rest = _search_words(options.selection, "tune")
+    experiment = known["case"].partition(".")[0]
+    overrides = [quoted(word) for word in rest if re.match(rf"[+~]|seed=|shared\.|{re.escape(experiment)}\.", word)]
+    parameters = [word for word in rest if quoted(word) not in overrides]
+    search = tune.search_of(known["case"], known["metric"], known["sign"], parameters, overrides)
+    if not search.ranges:
+        raise InputError(f"{search.name}: no parameter of its law declares a range; name some: law.gain=0.01..0.1")
+    found, path = tune.run(search, known["budget"], known["results"], known["workers"], say)
+    if found.best is None:
+        raise InputError(f"{search.name}: {found.edges[0]}")
+    values = ", ".join(f"{key} = {value:g}" for key, value in found.chosen.items()) or "as it stands"
+    was = "undefined" if found.start is None else f"{found.start:.4g}"
+    failed = f" ({found.failed} of them without a usable value)" if found.failed else ""
+    say(f"{search.name}: {search.metric} {found.best:.4g} instead of {was} after {found.runs} runs{failed}: {values}")
+    for edge in found.edges:
+        say(edge)
+    say(f"stored in {path}")
+    if found.chosen:
+        given = [f"'{word}'" for word in rest if word not in parameters]
+        say(" ".join(["dexrepro run", f"only={experiment} case={search.case}", *given, search.override(found.chosen)]))
+    return OK
+
+
+@command(
+    "the laws of a folder beside the book's, tuned alike",
+    ("laws", "case", "minimise", "maximise", "budget", "results", "workers"),
+)  # fmt: skip
+def compare_command(options: argparse.Namespace) -> int:
+    """``dexrepro compare laws=FOLDER case=EXPERIMENT.CASE,… minimise=METRIC budget=N``."""
+    import pandas as pd
+
+    from dexrepro import tune
+
+    known, rest = _search_words(options.selection, "compare", "laws")
+    if rest:
+        raise InputError(f"'{rest[0]}' has no meaning here; see: dexrepro compare --help")
+    laws = tune.laws_in(folder_named(known["laws"], "laws"))
+    results, names = known["results"], known["case"].split(",")
+    rows = tune.leaderboard(
+        names, laws, known["metric"].split(","), known["sign"],
+        lambda search: tune.run(search, known["budget"], results, known["workers"], say)[0],
+    )  # fmt: skip
+    shown = Table(*rows[0], title=f"{known['budget']} runs each", box=None, pad_edge=False)
+    for row in rows:
+        shown.add_row(*(f"{value:.4g}" if isinstance(value, float) else str(value or "") for value in row.values()))
+    out.print(shown)
+    path = results / "tuning" / f"leaderboard-{'-'.join(dict.fromkeys(name.partition('.')[0] for name in names))}.csv"
+    pd.DataFrame(rows).to_csv(path, index=False)
+    say(f"stored in {path}")
+    return OK
+
+
+def _search_words(words: Sequence[str], command: str, *needed: str) -> tuple[dict[str, Any], list[str]]:
+    """What the words of ``tune`` and ``compare`` ask for, and the other words."""
+    from dexrepro.keys import TAKEN
+    from dexrepro.selection import positive_workers
+
+    own = TAKEN[command]
+    known: dict[str, Any] = dict(text.partition("=")[::2] for text in words if text.partition("=")[0] in own)
+    for key in ("case", *needed):
+        if not known.get(key):
+            raise InputError(f"{key}= is missing; there are: {', '.join(f'{name}=' for name in own)}")
+    goals = [key for key in ("minimise", "maximise") if known.get(key)]
+    if len(goals) != 1:
+        raise InputError("give minimise=METRIC or maximise=METRIC: the metric of the case that is to be best")
+    budget = str(known.get("budget", "32"))
+    if not (budget.isdecimal() and 2 <= int(budget) <= 4096):
+        raise InputError(f"budget = {budget} is not allowed: it must be a whole number of 2 or greater, 4096 at most")
+    workers = known.get("workers")
+    known |= {
+        "metric": known[goals[0]], "sign": 1 if goals[0] == "minimise" else -1, "budget": int(budget),
+        "results": folder_named(known.get("results", "results")),
+        "workers": positive_workers(int(workers) if workers and workers.isdigit() else workers),
+    }  # fmt: skip
+    return known, [word for word in words if word.partition("=")[0] not in own]
+
+
+@command(
+    "write a working control law of your own, with its test", None,
+    option("what", choices=["controller"], help="what to write"),
+    option("--kind", choices=["joint", "end_point", "holding"], default="holding", help="where it thinks"),
+    option("name", nargs=None, help="class name, for example MyLaw"),
+)  # fmt: skip
+def new_command(options: argparse.Namespace) -> int:
+    """``dexrepro new controller NAME [--kind KIND]``."""
+    from dexrepro.scaffold import new_controller
+
+    law, test, words = new_controller(options.name, options.kind, Path())
+    say(f"wrote {law} and {test}; try:\n  pytest {test}\n  {words}")
+    return OK

@@ -1,0 +1,191 @@
+"""What is there, and what is made of it: lists, pages, pictures, films, comparisons."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from dexrepro.commands import FAILED, OK, command, option, out, say, warn
+from dexrepro.errors import InputError
+from dexrepro.keys import SELECTION
+
+
+@command(
+    "chapters, experiments, cases, figures, claims, errata", None,
+    option("--json", help="for programs, see docs/schemas"),
+    option("--markdown", help="the claims of the book counted by verdict"),
+    option("--schema", help="a JSON schema of all parameters, for an editor"),
+)  # fmt: skip
+def list_command(options: argparse.Namespace) -> int:
+    """Everything there is, as text or JSON; or the claims of the book counted, as the README's table."""
+    from dexrepro import scoreboard
+    from dexrepro.report.listing import listing
+
+    if options.markdown:
+        print(scoreboard.markdown())
+        return OK
+    if options.schema:
+        from dexrepro.report.schema import schema
+
+        print(json.dumps(schema(), indent=1))
+        return OK
+
+    data = listing()
+    if options.json:
+        print(json.dumps(data, indent=1))
+        return OK
+    for chapter in data["chapters"]:
+        out.print(f"[bold]Chapter {chapter['chapter']}: {chapter['title']}[/bold]")
+        for experiment in chapter["experiments"]:
+            made = ", ".join([*experiment["figures"], *experiment["tables"]])
+            say(f"  {experiment['name']}: {made}")
+            say(f"    cases: {', '.join(experiment['cases'])}")
+        out.print(f"  {len(chapter['claims'])} claims, {len(chapter['errata'])} errata")
+    return OK
+
+
+@command(
+    "all there is about a claim, figure, equation, symbol, law, parameter or experiment", ("results",),
+    metavar="NAME",
+    more="\n\nexamples: dexrepro show C4.01 (or 2.7, 2.32, k_o, ImpedanceReference, movement_estimation.stiffness)",
+)  # fmt: skip
+def show_command(options: argparse.Namespace) -> int:
+    """``dexrepro show NAME ...``: all there is about a claim, figure, equation, symbol, law, parameter, experiment."""
+    from dexrepro.report.show import show
+    from dexrepro.selection import selected
+
+    keyed = [word for word in options.selection if word.startswith("results=")]
+    results = selected(keyed, "show").results
+    if not (names := [word for word in options.selection if word not in keyed]):
+        raise InputError("show needs a name, such as C4.01, 2.7, 2.32, k_o or movement_estimation")
+    for name in names:
+        for line in show(name, results):
+            say(line)
+    return OK
+
+
+@command(
+    "draw again from files, nothing simulated: of a FOLDER such as one in results/runs, or as selected",
+    (*SELECTION, "case", "format", "style"), metavar="FOLDER|key=value",
+)  # fmt: skip
+def draw_command(options: argparse.Namespace) -> int:
+    """``dexrepro draw [FOLDER ...] [key=value ...]``: figures and tables again from what is on disk."""
+    from dexrepro.plan import plan_chapter, select
+    from dexrepro.pool import sentence
+    from dexrepro.report.damage import check_result
+    from dexrepro.runner import redraw
+    from dexrepro.selection import existing, quoted, selected
+    from dexrepro.storage import read_json
+
+    folders, words = ([text for text in options.selection if ("=" in text) == keyed] for keyed in (False, True))
+    numbers, only, results, _, extra = selected(words, "draw")
+    given, look, kind = dict(word.partition("=")[::2] for word in words), extra.pop("style", None), None
+    if look or "format" in extra:
+        from dexrepro.report import export
+
+        kind, look = export.checked(extra.pop("format", "pdf"), look or "paper")
+    if folders:
+        if other := {"chapter", "only", *extra} & set(given):
+            raise InputError(f"{', '.join(sorted(other))}: a folder says which result; leave out one of the two")
+        found = [Path(folder) for folder in folders]
+    else:
+        parts = {n: select(n, only or None, None) for n in numbers}
+        found = [existing(results) / f"chapter{n}" / e.name for n, experiments in parts.items() for e in experiments]
+        if extra:
+            words = [quoted(f"results={results}"), *(quoted(f"case={value}") for value in extra.values())]
+            words += [f"only=[{','.join(only)}]"] if only else []
+            plans = [plan for number in numbers for plan in plan_chapter(number, words, write=False)[0]]
+            found = [plan.folder for plan in plans]
+        found = [folder for folder in found if (folder / "run.json").exists()]
+    if not found:
+        raise InputError(f"there is no such result in {results}; run first: dexrepro run {' '.join(options.selection)}")
+    checked = [check_result(folder, "metrics.json", "config.yaml", series=True) for folder in found]
+    status = OK
+    for folder, experiment in zip(found, checked):
+        try:
+            if kind and look:
+                target = results / "figures" / look
+                if folder.name != experiment.name:  # of other parameters, or of some cases
+                    target /= folder.name
+                made = export.export(experiment, folder, target, kind, look, given.get("figure"))
+            else:
+                redraw(read_json(folder / "run.json")["chapter"], experiment.name, folder)
+                made = [folder]
+        except Exception as error:  # a result of another version, say; the others can still be drawn
+            warn(f"{folder} cannot be drawn, run it again: {sentence(error)}")
+            status = FAILED
+        else:
+            for path in made:
+                say(path)
+    return status
+
+
+@command("build the HTML page from files", ("results",))
+def report_command(options: argparse.Namespace) -> int:
+    """Build results/report/index.html."""
+    from dexrepro.report import page
+    from dexrepro.selection import existing, selected
+
+    say(page.build(existing(selected(options.selection, "report").results)))
+    return OK
+
+
+@command(
+    "animate recorded runs: of a FOLDER, or films that are missing or outdated",
+    (*SELECTION, "case", "format", "allow"), metavar="FOLDER|key=value",
+)  # fmt: skip
+def render_command(options: argparse.Namespace) -> int:
+    """``dexrepro render [FOLDER | chapter=N] [only=EXPERIMENT] [case=NAME] [format=gif|mp4] [allow=MODULE,...]``.
+
+    Without a folder or an experiment: the film of every experiment that declares one and has a result, where it is
+    missing or older than its recording.
+    """
+    from dexrepro import chapters
+    from dexrepro.report import animation
+    from dexrepro.selection import selected
+
+    folders = [Path(text) for text in options.selection if "=" not in text]
+    words = [text for text in options.selection if "=" in text]
+    numbers, only, results, _, values = selected(words, "render")
+    allow = [name for name in values.get("allow", "").strip("[]").split(",") if name]
+    kind = values.get("format", "gif")
+    if kind not in ("gif", "mp4"):
+        raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
+    if "case" in values and not folders and not only:
+        raise InputError(f"case = {values['case']}: of which experiment? add only=EXPERIMENT or a result folder")
+    films = []
+    for number in () if folders else numbers:
+        for experiment in chapters.load(number).experiments:
+            folder = results / f"chapter{number}" / experiment.name
+            if film := animation.film_of(folder, experiment):
+                films.append(film)
+            outdated = film is not None and not animation.up_to_date(film.with_suffix(f".{kind}"), experiment)
+            if experiment.name in only or (not only and outdated):
+                folders.append(folder)
+    if not folders and not films:
+        raise InputError(f"no result in {results} has a film; run first: dexrepro run")
+    for folder in folders:
+        say(animation.render(folder, values.get("case"), kind, allow))
+    if not folders:
+        out.print(f"nothing to render: {len(films)} films are up to date")
+    return OK
+
+
+@command(
+    "compare two results: configuration, metrics, verdicts, series", None,
+    option("a", type=Path, help="folder of a result"),
+    option("b", type=Path, help="folder of another"),
+    option("--html", type=Path, metavar="FILE", help="write a page instead, with both recordings to explore"),
+)  # fmt: skip
+def diff_command(options: argparse.Namespace) -> int:
+    """Compare two result folders."""
+    from dexrepro.report.compare import compare, write_page
+
+    if options.html:
+        write_page(options.a, options.b, options.html)
+        say(options.html)
+        return OK
+    for line in compare(options.a, options.b):
+        say(line)
+    return OK

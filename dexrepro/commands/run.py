@@ -1,0 +1,213 @@
+"""``dexrepro run``, and jobs by a launcher of Hydra's."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from dexrepro.commands import FAILED, OK, SHOWN, command, err, option, out, say, warn
+from dexrepro.errors import InputError, folder_named
+from dexrepro.keys import SELECTION
+
+HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--info", "-i", "--hydra-help", "--resolve")
+MORE = """
+  EXPERIMENT.key=value    any parameter (dexrepro show EXPERIMENT names them); what deviates from the book goes to runs/
+  +scene=NAME             a scene, or another file, of the folder that --config-dir names
+
+examples:
+  dexrepro run chapter=2                       every experiment of a chapter
+  dexrepro run figure=2.7 seed=3               what one figure needs
+  dexrepro run -m figure=2.7 'seed=range(10)'  a sweep; hydra/launcher=joblib, ray, submitit_slurm
+  dexrepro run --config-dir FOLDER +scene=NAME
+  dexrepro run chapter=N --cfg job             every parameter with its value"""
+
+
+@command(
+    "simulate, measure and draw what is not there yet",
+    (*SELECTION, "case", "seed", "engine", "workers", "case_timeout", "force", "quiet", "gui"),
+    option("-m", "--multirun", help="a sweep: each combination of values is a job"),
+    option("-cd", "--config-dir", metavar="DIR", help="a folder of your own with configurations and laws"),
+    option("-c", "--cfg", choices=["job", "hydra", "all"], help="print the configuration, run nothing"),
+    option("-i", "--info", nargs=None, help="what Hydra knows: all, defaults, plugins (see also --hydra-help)"),
+    option("--resolve", help="with --cfg: references replaced by their values"),
+    more=MORE,
+)  # fmt: skip
+def run_command(arguments: list[str]) -> int:
+    """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
+    from dexrepro.selection import for_hydra, quoted
+
+    arguments = [quoted(argument) for argument in arguments]
+    extra_dir, overrides = _config_dir_option(arguments)
+    if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
+        given = [text for text in overrides if not text.startswith("-") and "=" in text]
+        if arguments[-2:] in (["--cfg", "job"], ["-c", "job"]) and not {"-m", "--multirun"} & set(arguments):
+            return _print_config(given, extra_dir)
+        return launch(for_hydra(arguments, given, extra_dir), _run_job)
+    return run_overrides(overrides, extra_dir)
+
+
+def _print_config(overrides: Sequence[str], extra_dir: str | None) -> int:
+    """Every parameter of the chapters selected, as the experiments see them."""
+    import yaml
+
+    from dexrepro.config import compose_chapter
+    from dexrepro.selection import chapters_of, of_chapter
+
+    numbers, rest = chapters_of(overrides, extra_dir)
+    for number in numbers:
+        composed = compose_chapter(number, of_chapter(number, numbers, rest), extra_dir)
+        print(yaml.safe_dump({key: value for key, value in composed.items() if key != "hydra"}, sort_keys=False))
+    return OK
+
+
+def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
+    rest, extra_dir = list(arguments), None
+    for index, argument in enumerate(arguments):
+        if argument in ("--config-dir", "-cd"):
+            if index + 1 == len(arguments):
+                raise InputError("--config-dir needs a folder")
+            extra_dir = str(folder_named(arguments[index + 1], argument))
+            del rest[index : index + 2]
+        elif argument.startswith("--config-dir="):
+            extra_dir = str(folder_named(argument.partition("=")[2], "--config-dir"))
+            rest.remove(argument)
+    if extra_dir is not None:
+        _make_importable(extra_dir)
+    return extra_dir, rest
+
+
+def _make_importable(folder: str) -> None:
+    """Let ``_target_`` name classes of files in the user's folder, here and in the processes started from here."""
+    if not Path(folder).is_dir():
+        raise InputError(f"--config-dir = {folder} is not allowed: there is no such folder")
+    if (path := str(Path(folder).resolve())) not in sys.path:
+        sys.path.append(path)
+
+
+def run_overrides(overrides: Sequence[str], extra_dir: str | None = None) -> int:
+    """Plan, run and summarise what a list of overrides selects; say on stderr what failed."""
+    failures = _sentences(_run(overrides, extra_dir))
+    for sentence in failures:
+        warn(sentence)
+    return FAILED if failures else OK
+
+
+def _sentences(outcome: Any) -> list[str]:
+    """What failed, and under which values that are not the book's, which may be the reason."""
+    said = []
+    for reason, names in outcome.reasons().items():
+        experiment = names[0].partition(".")[0]
+        under = _differs(experiment, outcome.differs.get(experiment, []))
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        said.append("; ".join([f"{names[0]}{more} failed: {reason}", *under]))
+    return said
+
+
+def _differs(name: str, differs: Sequence[str]) -> list[str]:
+    named = ", ".join(differs[:SHOWN]) + (f" and {len(differs) - SHOWN} more" if len(differs) > SHOWN else "")
+    return [f"{name} differs from the book in: {named}"] if differs else []
+
+
+def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
+    from dexrepro.config import compose_chapter
+    from dexrepro.physics.engine import REFERENCE
+    from dexrepro.plan import plan_chapter
+    from dexrepro.progress import Bar, Lines, Silent
+    from dexrepro.runner import Outcome, run_plans, summary_rows
+    from dexrepro.selection import chapters_of, of_chapter, positive_workers
+
+    numbers, rest = chapters_of(overrides, extra_dir)
+    plans: list[Any] = []
+    skipped: dict[str, str] = {}
+    settings: dict[str, Any] = {}
+    for number in numbers:
+        own = of_chapter(number, numbers, rest)
+        settings = compose_chapter(number, own, extra_dir)
+        chapter_plans, chapter_skipped = plan_chapter(number, own, composed=settings)
+        plans += chapter_plans
+        skipped |= chapter_skipped
+    if settings.get("engine") is None and any(REFERENCE != plan.engine in plan.versions for plan in plans):
+        err.print(
+            "PyBullet is not installed here (its wheels are for Python 3.11 on Linux): MuJoCo simulates the arms; how "
+            "its numbers differ from those stored is in docs/how-to/engines.md"
+        )
+    quiet = bool(settings.get("quiet"))
+    progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
+    with progress if isinstance(progress, Bar) else nullcontext():
+        workers, force = positive_workers(settings.get("workers")), bool(settings.get("force"))
+        outcome: Outcome = run_plans(plans, workers=workers, force=force, progress=progress)
+    outcome.skipped = skipped
+    if not quiet:
+        _print_summary(outcome)
+    for text in dict.fromkeys(text for row in summary_rows(outcome) for text in row["warnings"]):
+        warn(f"warning: {text}")
+    return outcome
+
+
+def launch(arguments: Sequence[str], job: Callable[[Any], None]) -> int:
+    """Jobs by Hydra and its launcher; the exit status."""
+    from dexrepro.sweep import JobFailed, launch
+
+    try:
+        launch(arguments, job)
+    except JobFailed as error:
+        warn(f"a job of the sweep failed: {error}")
+        return FAILED
+    return OK
+
+
+def _run_job(config: Any) -> None:
+    """One job of a sweep: the same as a plain run with its overrides."""
+    from dexrepro.sweep import JobFailed, enter_launch_folder, job_overrides
+
+    enter_launch_folder()
+    overrides, extra_dir = job_overrides()
+    if extra_dir is not None:
+        _make_importable(extra_dir)
+    if failures := _sentences(_run(overrides, extra_dir)):
+        raise JobFailed("; ".join(failures))
+
+
+def _print_summary(outcome: Any) -> None:
+    from dexrepro.claims import NOT_EVALUATED, VERDICTS
+    from dexrepro.runner import summary_rows
+
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    rows = summary_rows(outcome)
+    shown = [verdict for verdict in VERDICTS if any(row["claims"].get(verdict) for row in rows)]
+    for column in ("experiment", "wall [s]", "x real time", *shown, "result"):
+        table.add_column(column, justify="left" if column in ("experiment", "result") else "right", no_wrap=True)
+    evaluated = True
+    for row in rows:
+        factor = f"{row['real_time_factor']:.1f}" if row["real_time_factor"] else ""
+        verdicts = row["claims"]
+        evaluated = evaluated and not verdicts.get(NOT_EVALUATED)
+        counts = [str(verdicts.get(key, 0) or "") for key in shown]
+        table.add_row(row["experiment"], f"{row['wall']:.1f}", factor, *counts, row["folder"])
+    out.print(table)
+    for name, reason in outcome.skipped.items():
+        say(f"{name} skipped: {reason}")
+    for name, differs in outcome.differs.items():
+        for line in _differs(name, differs) if name in outcome.folders else ():
+            say(line)
+    for line in _claims_to_name(outcome):
+        say(line)
+    if not evaluated:
+        out.print("claims whose metrics this run does not have are not evaluated")
+
+
+def _claims_to_name(outcome: Any) -> list[str]:
+    from dexrepro.baselines import Baseline
+    from dexrepro.report import verdicts
+    from dexrepro.storage import read_json
+
+    lines = []
+    for name, folder in outcome.folders.items():
+        run, claims = read_json(folder / "run.json"), read_json(folder / "claims.json")
+        lines += verdicts.to_name(claims, Baseline.of(run["chapter"], name).claims) if claims else []
+    return lines

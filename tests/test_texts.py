@@ -1,0 +1,154 @@
+"""No text of the book's pages types a number that a run or the configuration gives."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from dexrepro import chapters
+from dexrepro.checks import leaves, value_at
+from dexrepro.config import compose_chapter
+from dexrepro.experiment import Experiment
+from dexrepro.provenance import provenance
+
+UNITS = {
+    "%": 1e-2, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1, "ms": 1e-3, "s": 1, "N": 1, "rad": 1, "mrad": 1e-3,
+    "degrees": 1, "deg": 1, "Hz": 1, "kHz": 1e3, "kg": 1, "g": 1e-3, "times": 1, "cm^2": 1,
+}  # fmt: skip
+_UNIT = "|".join(re.escape(unit) for unit in sorted(UNITS, key=len, reverse=True))
+NUMBER = re.compile(
+    r"(?<![\w.^])(?P<value>\d+(?:\.\d+)?(?:e-?\d+)?)(?![\w.]*\d)"
+    rf"(?:(?= ?(?P<unit>{_UNIT})(?!\w))|(?=(?:(?: to| and| or|,) \d[\d.]*)+ ?(?P<later>{_UNIT})(?!\w)))?"
+)
+NO_NUMBERS = (
+    r"\{[^{}]*\}",  # filled from the run
+    r"\$[^$]*\$",
+    r"\(\d+\.\d+[^()]*\)",  # equations
+    r"\b\d+\.\d+\.\d+[\w.]*|\b[A-Z]\d\.\w+",  # sections, figures, claims, errata
+    r"\[\d+\]|#[\da-f]{6}",  # references, colours
+    r"\b(?:[Ff]igs?\.|[Tt]able|[Ll]ines?|[Ss]ect\.|Lemma|[Rr]emark|[Cc]hapter|[Tt]heorem|[Aa]lgorithm|Traj\.|[Cc]ases?|[Cc]onditions?|Assumption"
+    r"|Step|subsection) \d[\d.]*\w?(?:(?:,| and| to| or) \d[\d.]*)*",
+)
+QUOTED = {
+    "C1.27": {16.0},  # operations of a general product
+    "C4.03": {10.0}, (
+        "C4.19"
+    ): {10.0}, (
+        "skill_reuse"
+    ): {10.0}, (
+        "barrier_and_switch"
+    ): {10.0},  # ms, of a definition of ours
+    "6.1": {16.0, 20.0}, "E6.14": {16.0, 34.0, 35.0}, "E7.27": {21.0},  # the book's, and what it may have meant
+    "E4.07": {0.638},  # where the largest E of (4.26) is 1
+}  # fmt: skip
+"""Numbers that follow from a definition, or are the book's and no parameter of ours."""
+CONVENTIONS = frozenset({0.9, 0.95})
+"""Quantiles and intervals that are shown."""
+
+
+def numbers(text: str) -> list[tuple[float, float]]:
+    """Decimal numbers, numbers with a unit, and whole numbers above twelve, with the size of the unit."""
+    for pattern in NO_NUMBERS:
+        text = re.sub(pattern, "", text)
+    found = []
+    for match in NUMBER.finditer(text):
+        unit, value = match["unit"] or match["later"], float(match["value"])
+        if unit or value > 12 or not match["value"].isdigit():
+            found.append((value, UNITS.get(unit, 1)))
+    return found
+
+
+def typed(text: str, known: frozenset[float]) -> list[float]:
+    """Numbers of a text that are not known: in SI units, or as they stand where no prefix says otherwise."""
+    return [
+        v
+        for v, unit in numbers(text)
+        if not {_rounded(v * unit), _rounded(v if unit in (1, 0.01) else v * unit)} & known
+    ]
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.6g}")
+
+
+@cache
+def printed(number: str, experiment: str = "") -> frozenset[float]:
+    """What the book prints, by the configuration (of an experiment) and the references: a text may quote it."""
+    composed = compose_chapter(number)
+    keys = [key for key, origin in provenance(number).items() if origin.kind == "printed"]
+    keys = [key for key in keys if not experiment or key.startswith((f"{experiment}.", "shared."))]
+    values = [value for key in keys for _, value in leaves(value_at(composed, key))]
+    values += [reference.value for reference in chapters.load(number).references]
+    return frozenset(_rounded(abs(value)) for value in values if isinstance(value, int | float))
+
+
+@cache
+def own(folder: Path) -> frozenset[float]:
+    """Bounds and windows: numbers in the code of an experiment, which decide what it measures and claims."""
+    trees = [
+        ast.parse((folder / name).read_text()) for name in ("experiment.py", "claims.py") if (folder / name).exists()
+    ]
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    values = [n.value for n in nodes if isinstance(n, ast.Constant)]
+    return frozenset(_rounded(value) for value in values if isinstance(value, int | float))
+
+
+def texts_of(experiment: Experiment, number: str) -> Iterator[tuple[str, str]]:
+    for identifier, figure in experiment.figures.items():
+        yield from ((identifier, figure.caption), (identifier, figure.alt))
+    yield from experiment.tables.items()
+    for claim in chapters.load(number).claims_of(experiment.name):
+        for text in (
+            claim.note,
+            claim.beside,
+            claim.searched,
+            claim.no_control,
+            claim.by_construction,
+            *claim.readings,
+        ):
+            yield claim.id, text
+
+
+def labels_of(path: Path) -> Iterator[tuple[str, str]]:
+    """Titles, labels and rows that a module writes; docstrings and identifiers of figures and tables are none."""
+    tree = ast.parse(path.read_text())
+    assigned = [node for node in tree.body if isinstance(node, ast.Assign)]
+    texts = {n for a in assigned if getattr(a.targets[0], "id", "") in ("FIGURES", "TABLES") for n in ast.walk(a)}
+    parts = {value for node in ast.walk(tree) if isinstance(node, ast.JoinedStr) for value in node.values}
+    docs = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        if node in texts or node in docs or node in parts:
+            continue
+        if isinstance(node, ast.JoinedStr):
+            written = (v.value if isinstance(v, ast.Constant) else "{}" for v in node.values)
+            yield f"{path.parent.name}:{node.lineno}", "".join(map(str, written))
+        elif isinstance(value := getattr(node, "value", None), str) and not re.fullmatch(r"T?\d+\.\w+", value):
+            yield f"{path.parent.name}:{node.lineno}", node.value
+
+
+@pytest.mark.parametrize("number", chapters.numbers())
+def test_no_caption_title_note_or_label_types_a_number_of_a_run_or_a_parameter(number: str) -> None:
+    """They come from metrics or parameters by placeholders; the book's and those of the tests themselves may stand."""
+    chapter, found = chapters.load(number), []
+    for experiment in chapter.experiments:
+        folder = chapter.folder / experiment.name
+        known = printed(number, experiment.name) | own(folder) | CONVENTIONS
+        for place, text in (*texts_of(experiment, number), *labels_of(folder / "figures.py")):
+            quoted = QUOTED.get(place.partition(":")[0], set())
+            found += [(place, text[:70], item) for item in typed(text, known) if item not in quoted]
+    for item in chapter.errata:
+        for text in (item.summary, item.correction):
+            values = set(typed(text, printed(number))) - QUOTED.get(item.id, set())
+            found += [(item.id, text[:70], value) for value in values]
+    assert not found, "\n".join(map(str, found))
+
+
+def test_numbers_are_told_from_equations_sections_and_placeholders() -> None:
+    text = "By (6.3), Sect. 4.5 and T4.S, after {e.a.x:.1f} s: 12 of 20 in 0.5 or 3 % and 5 to 6 mm in Cases 1 and 2."
+    assert numbers(text) == [(20, 1), (0.5, 0.01), (3, 0.01), (5, 1e-3), (6, 1e-3)]
+    assert typed(text, frozenset({20.0, 0.005, 0.03, 5.0})) == [6]
