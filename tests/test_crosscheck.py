@@ -7,7 +7,6 @@ import pytest
 
 from dexrepro import baselines, cli, crosscheck, study
 from dexrepro.baselines import Baseline
-from dexrepro.claims import NOT_EVALUATED
 from dexrepro.crosscheck import Comparison, Difference
 from dexrepro.errors import InputError
 from dexrepro.physics import engine
@@ -114,7 +113,7 @@ def test_samples_of_another_engine_count_while_the_engines_agree(tmp_path, monke
         assert study._kept("2", "holding_line", tmp_path).keys() == ({0, 1} if counts else {1})
 
 
-def test_the_shipped_table_is_of_today_s_baselines_and_of_all_experiments_with_simulated_arms():
+def test_the_shipped_table_is_of_all_experiments_with_simulated_arms_and_of_claims_that_there_are():
     from dexrepro import chapters
 
     shipped = {item.experiment: item for item in crosscheck.stored(crosscheck.table(Path(), shipped=True))}
@@ -125,9 +124,5 @@ def test_the_shipped_table_is_of_today_s_baselines_and_of_all_experiments_with_s
         if uses_engine(experiment)
     }
     assert {(name, item.chapter) for name, item in shipped.items()} == simulated
-    for item in shipped.values():
-        stored = Baseline.of(item.chapter, item.experiment)
-        assert item.compared == len(stored.metrics)
-        assert all(entry.reference == stored.metrics[entry.name]["value"] for entry in item.metrics)
-        known = {key: verdict for key, verdict in stored.claims.items() if verdict != NOT_EVALUATED}
-        assert {key: reference for key, (reference, _) in item.claims.items()} == known
+    known = {claim.id for number in chapters.numbers() for claim in chapters.load(number).claims}
+    assert {key for item in shipped.values() for key in item.claims} <= known
