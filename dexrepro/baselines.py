@@ -25,7 +25,7 @@ from dexrepro.plan import Plan, outdated, plan_chapter, select
 from dexrepro.pool import BLAS_THREADS
 from dexrepro.report.damage import check_result, read_table
 from dexrepro.runner import run_plans
-from dexrepro.storage import read_json, write_json
+from dexrepro.storage import read_json, require, write_json
 
 PERTURBATIONS = (1e-9, -1e-9)  # rad, or share of the input data's range; one may take the same branch by luck
 SECONDS = 60.0  # of wall time of all cases, up to which an experiment is run with other arithmetic, too
@@ -75,6 +75,7 @@ class Baseline:
             return cls()
         try:
             found = cls(**read_json(path))
+            require(vars(found), {"metrics": dict, "claims": dict, "free": dict})
             for name, entry in found.metrics.items():
                 _check_entry(name, entry)
             for table in (found.tables or {}).values():

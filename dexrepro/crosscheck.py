@@ -21,7 +21,7 @@ from dexrepro.errors import InputError
 from dexrepro.plan import Plan, plan_chapter, uses_engine
 from dexrepro.progress import Progress
 from dexrepro.runner import flat, run_plans
-from dexrepro.storage import read_json, write_json
+from dexrepro.storage import read_json, require, write_json
 
 OTHER = "mujoco"
 SPREAD = (0.05, 0.95)  # quantiles of a number among the samples of a study
@@ -130,11 +130,12 @@ def stored(path: Path) -> list[Comparison]:
         return []
     try:
         return [_of(row) for row in read_json(path)]
-    except (OSError, ValueError, TypeError, KeyError) as error:
+    except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
         raise InputError(f"{path} is no table of comparisons ({' '.join(str(error).split())})") from error
 
 
 def _of(row: Mapping[str, Any]) -> Comparison:
+    require(row, {"chapter": str, "experiment": str, "metrics": list, "claims": dict})
     metrics = [Difference(**{**item, "spread": item["spread"] and tuple(item["spread"])}) for item in row["metrics"]]
     claims = {key: (reference, other) for key, (reference, other) in row["claims"].items()}
     return Comparison(**{**row, "metrics": metrics, "claims": claims})

@@ -120,7 +120,7 @@ def execute(job: Job) -> CaseEntry:
     engine.use(job.config.get("engine", engine.REFERENCE))
     experiment = chapters.load(job.chapter).experiment(job.experiment)
     import_anew(job.config)
-    with warnings.catch_warnings(record=True) as caught:
+    with warnings.catch_warnings(record=True) as caught, contextlib.chdir("."):  # a law may go elsewhere
         config = live(job.config)
         if job.own != own_digest(job.config) and "__main__." not in str(job.config):
             raise InputError("a file that it uses was edited meanwhile; the same command runs it again")

@@ -185,9 +185,26 @@ def write_text(path: Path, text: str) -> None:
 def read_json(path: Path) -> Any:
     """The content of a JSON file. Raises ValueError where it is none."""
     try:
-        return json.loads(read_text(path))
+        return json.loads(read_text(path), parse_int=_whole)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
+
+
+def _whole(digits: str) -> int:
+    if len(digits) > 300:
+        raise ValueError("it holds a number of more than 300 digits")
+    return int(digits)
+
+
+def require(data: Any, kinds: Mapping[str, Any], where: str = "") -> None:
+    """Raise ValueError where data is no dict that has these keys, each of its kind; true is no number."""
+    if not isinstance(data, dict):
+        raise ValueError(f"{where.rstrip('.') or 'it'} holds no dict")
+    for key, kind in kinds.items():
+        if key not in data:
+            raise ValueError(f"it has no '{where}{key}'")
+        if not isinstance(data[key], kind) or isinstance(data[key], bool):
+            raise ValueError(f"{where}{key} = {str(data[key])[:40]!r} is of another kind")
 
 
 def finite(data: Any) -> Any:

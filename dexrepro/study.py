@@ -20,7 +20,7 @@ import time
 import zlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import chdir, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -43,7 +43,7 @@ from dexrepro.plan import content_of, uses_engine
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.provenance import Provenance, provenance
 from dexrepro.runner import flat, summarise
-from dexrepro.storage import claimed, digest_of, finite, locked, opened, read_json, write_json, write_text
+from dexrepro.storage import claimed, digest_of, finite, locked, opened, read_json, require, write_json, write_text
 
 Cases = tuple[str, ...]
 
@@ -174,7 +174,9 @@ def evaluate(
             continue
         start = time.perf_counter()
         try:
-            found: dict[str, Any] = {"metrics": _rounded(finite(run_case(definition, live(config), seed)[1]))}
+            with chdir("."):  # a law may go elsewhere
+                metrics = run_case(definition, live(config), seed)[1]
+            found: dict[str, Any] = {"metrics": _rounded(finite(metrics))}
         except Exception as problem:
             found = {"error": f"{type(problem).__name__}: {' '.join(str(problem).split())}"}
         cases[case] = {"content": content, **found, "seconds": round(time.perf_counter() - start, 3)}
@@ -529,13 +531,21 @@ def stored(results: Path) -> list[dict[str, Any]]:
     return found
 
 
+NUMBER = (int, float)
+ROW = {"samples": int, "holds": int, "share": NUMBER, "low": NUMBER, "high": NUMBER, "median_margin": NUMBER,
+       "parameter": (str, type(None)), "correlation": (int, float, type(None))}  # fmt: skip
+
+
 def _summary(path: Path) -> dict[str, Any]:
     """A stored summary. Raises InputError where the file is none."""
     try:
         found: dict[str, Any] = read_json(path)
-        numbers = [found["samples"], *(row[key] for row in found["claims"].values() for key in ("samples", "holds"))]
-        if not all(isinstance(number, int) for number in numbers) or not isinstance(found["chapter"], str):
-            raise ValueError("it counts no samples of a chapter")
+        require(found, {"chapter": str, "experiment": str, "samples": int, "varied": dict, "claims": dict})
+        for key, row in found["claims"].items():
+            require(row, ROW, f"{key}.")
+            quantiles = row.get("quantiles") or [row["median_margin"]] * len(QUANTILES)
+            if len(quantiles) != len(QUANTILES) or not all(isinstance(size, int | float) for size in quantiles):
+                raise ValueError(f"{key}.quantiles = {quantiles} is of another kind")
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
         reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
         raise InputError(f"{path} is no study ({reason}); remove it and repeat: dexrepro study") from error

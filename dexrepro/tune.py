@@ -14,7 +14,7 @@ import re
 import sys
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import chdir, suppress
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
@@ -82,7 +82,8 @@ class Search:
     def metrics(self, chosen: Mapping[str, float]) -> Metrics:
         """What one run measures."""
         definition = chapters.load(self.chapter).experiment(self.experiment)
-        return finite(run_case(definition, live(self.config(chosen)), self.seed)[1])
+        with chdir("."):  # a law may go elsewhere
+            return finite(run_case(definition, live(self.config(chosen)), self.seed)[1])
 
     def override(self, chosen: Mapping[str, float]) -> str:
         """The words that give the case these parameters; a list is given whole."""

@@ -7,7 +7,7 @@ import gzip
 import re
 import warnings
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 from xml.parsers import expat
@@ -18,7 +18,7 @@ from dexrepro import chapters
 from dexrepro.config import CASE
 from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment
-from dexrepro.storage import opened, read_json, read_text, read_yaml
+from dexrepro.storage import opened, read_json, read_text, read_yaml, require
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -152,14 +152,11 @@ def is_safe(svg: Path) -> bool:
     return not re.search(r"url\(\s*[\"']?(?!#)[^\s\"']|@import|javascript:|\\", "".join(styles), re.IGNORECASE)
 
 
-def _require(path: Path, data: Any, kinds: dict[str, Any], where: str = "") -> None:
-    if not isinstance(data, dict):
-        raise _damaged(path, f"{where.rstrip('.') or 'it'} holds no dict")
-    for key, kind in kinds.items():
-        if key not in data:
-            raise _damaged(path, f"it has no '{where}{key}'")
-        if not isinstance(data[key], kind) or isinstance(data[key], bool):
-            raise _damaged(path, f"{where}{key} = {str(data[key])[:40]!r} is of another kind")
+def _require(path: Path, data: Any, kinds: Mapping[str, Any], where: str = "") -> None:
+    try:
+        require(data, kinds, where)
+    except ValueError as error:
+        raise _damaged(path, error) from error
 
 
 def _read(path: Path) -> Any:

@@ -93,6 +93,17 @@ def test_a_law_that_never_returns_is_ended_where_that_is_asked_for(toy: Path, co
     assert in_cache(toy) == {"plain", "fast", "gain1", "gain2"}
 
 
+@pytest.mark.parametrize("fault", ["elsewhere", "delete", "say", "mute", "mask"])
+def test_what_a_law_does_to_its_process_or_to_the_results_spoils_none(toy: Path, command: Command, fault: str) -> None:
+    """It changes the folder, deletes the results, prints what is no letter, closes what is said, withdraws rights."""
+    status, said = command(f"run only=decay workers=1 {HALVED}{fault}")
+    assert status == 0, said
+    (result,) = toy.glob("results/runs/[!.]*")
+    assert len(read_json(result / "metrics.json")) > 20
+    assert in_cache(toy) == {"plain", "fast", "halved", "gain1", "gain2"}
+    assert not Path("/results/.cache/decay").exists()
+
+
 def square(number: int) -> int:
     return number * number
 

@@ -344,6 +344,8 @@ BASELINES = {
     "a list": "[]",
     "cut short": '{"metrics": {"decay.plain.final": {"value"',
     "other keys": '{"numbers": {}}',
+    "claims a list": '{"metrics": {}, "claims": [1]}',
+    "a number of 400 digits": '{"metrics": {"decay.plain.final": {"value": ' + "9" * 400 + ', "rtol": 0, "atol": 0}}}',
     "entries of another kind": '{"metrics": {"decay.plain.final": 3}, "claims": {}}',
     "infinite tolerance": '{"metrics": {"decay.plain.final": {"value": 1, "rtol": 0, "atol": Infinity}}, "claims": {}}',
     "absurd tolerance": '{"metrics": {"decay.plain.final": {"value": 1, "rtol": 50, "atol": 0}}, "claims": {}}',
@@ -361,6 +363,10 @@ def test_a_damaged_baseline_is_named(toy_result: Path, command: Command, kind: s
 
 
 HEAD = '{"chapter": "90", "experiment": "decay", "samples": 2, "failed": 0, "varied": {}, '
+ROW = (
+    '{"samples": 2, "holds": 1, "share": 0.5, "low": 0, "high": 1, "median_margin": 0, "parameter": null, '
+    '"correlation": null, "quantiles": []}'
+)
 STUDIES = {
     "empty": "",
     "a list": "[]",
@@ -369,6 +375,11 @@ STUDIES = {
     "a chapter of another kind": HEAD.replace('"90"', "[90]") + '"claims": {}}',
     "other rows": HEAD + '"claims": {"C": 1}}',
     "binary": "\x00\x01",
+    "varied null": HEAD.replace('"varied": {}', '"varied": null') + '"claims": {}}',
+    "an experiment of another kind": HEAD.replace('"decay"', "[1]") + '"claims": {}}',
+    "a share a text": HEAD + f'"claims": {{"C90.01": {ROW.replace("0.5", "{}")}}}}}',
+    "a parameter a list": HEAD + f'"claims": {{"C90.01": {ROW.replace("null", "[1]")}}}}}',
+    "quantiles of texts": HEAD + f'"claims": {{"C90.01": {ROW.replace("[]", "[1, 2, 3, 4, {}]")}}}}}',
 }
 
 
@@ -380,6 +391,20 @@ def test_a_damaged_study_is_named(toy_result: Path, command: Command, kind: str)
     status, said = command("report")
     assert status == 2
     assert f"{path} is no study" in said
+
+
+@pytest.mark.parametrize(
+    "content", ["", "5", "[null]", '[{"metrics": 5}]', '[{"metrics": [], "claims": []}]', "\0",
+                '[{"chapter": "90", "experiment": {}, "version": "1", "compared": 1, "metrics": [], "claims": {}}]',
+                '[{"chapter": "90", "experiment": "x", "version": "1", "compared": 1, "metrics": [5], "claims": {}}]'],
+)  # fmt: skip
+def test_a_damaged_crosscheck_is_named(toy_result: Path, command: Command, content: str) -> None:
+    path = Path("results/crosscheck/crosscheck.json")
+    path.parent.mkdir()
+    path.write_text(content)
+    status, said = command("report")
+    assert status == 2
+    assert f"{path} is no table of comparisons" in said
 
 
 def test_damaged_samples_of_a_study_are_named(toy_result: Path, monkeypatch: pytest.MonkeyPatch) -> None:

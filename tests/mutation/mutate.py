@@ -54,6 +54,12 @@ Share: how many of the possible changes of a module were drawn, with a fixed see
 
 | module | share | tried | noticed | equivalent | score |
 | --- | --- | --- | --- | --- | --- |"""
+FRESH = """
+Changes that were drawn with another seed after all tests had been written (`--seed`), whose survivors were left as they
+are: the score above is of the changes for which tests were written, this one is of those that nobody had seen.
+
+| draw | folder | share | tried | noticed | equivalent | score |
+| --- | --- | --- | --- | --- | --- | --- |"""
 OPERATORS = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult}
 COMPARISONS = {
     ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
@@ -323,6 +329,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("places", nargs="+", help="folders or modules of dexrepro/: networks, control/holding")
     parser.add_argument("--share", type=float, default=1.0, help="share of the mutants to try, drawn with a fixed seed")
+    parser.add_argument("--seed", default="", help="another draw, which nobody has seen: how well do tests generalise?")
     parser.add_argument("--least", type=float, default=0.9, help="smallest share of killed mutants")
     parser.add_argument("--write", action="store_true", help=f"the score into {SCORE.relative_to(ROOT)}")
     options = parser.parse_args()
@@ -343,7 +350,7 @@ def main() -> int:
             p for at in places for p in (sorted(at.rglob("*.py")) if at.is_dir() else [at.with_suffix(".py")])
         ]:
             relative = path.relative_to(ROOT / "dexrepro")
-            draw = random.Random(str(relative))
+            draw = random.Random(f"{relative}{options.seed}")
             chosen = [mutant for mutant in mutants(path) if draw.random() < options.share]
             left = [(line, text, code) for line, text, code in chosen
                     if not {f"{relative}: {text}", f"{relative}: {text.partition('  [')[0]}"} & accepted]  # fmt: skip
@@ -361,13 +368,23 @@ def main() -> int:
     tried, killed = (sum(score[k] for score in scores.values()) for k in (0, 1))
     print(f"{killed} of {tried} wrong laws noticed ({100 * killed / max(tried, 1):.1f} %)")
     if options.write:
-        write_score(scores, options.share)
+        write_score(scores, options.share, options.seed)
     return int(killed < options.least * tried)
 
 
-def write_score(scores: dict[str, tuple[int, int, int]], share: float) -> None:
-    """Renew the lines of the modules that were tried in the table of docs/."""
+def write_score(scores: dict[str, tuple[int, int, int]], share: float, seed: str = "") -> None:
+    """Renew the lines of the modules that were tried in the table of docs/; those of a fresh draw have their own."""
     written = SCORE.read_text("utf-8").splitlines() if SCORE.exists() else []
+    fresh = [line for line in written if line.startswith("| fresh ")]
+    if seed:
+        for folder in dict.fromkeys(name.partition("/")[0] for name in scores):
+            tried, killed, equal = (sum(row[k] for name, row in scores.items() if name.partition("/")[0] == folder)
+                                    for k in range(3))  # fmt: skip
+            begin = f"| fresh {seed} | {folder} |"
+            fresh = [line for line in fresh if not line.startswith(begin)]
+            percent = 100 * killed / max(tried, 1)
+            fresh.append(f"{begin} {100 * share:.0f} % | {tried} | {killed} | {equal} | {percent:.1f} % |")
+        scores = {}
     known = {line.split(" | ")[0].lstrip("| `").rstrip("`"): line for line in written if line.startswith("| `")}
     for name, numbers in scores.items():
         cells = (
@@ -385,7 +402,8 @@ def write_score(scores: dict[str, tuple[int, int, int]], share: float) -> None:
             folders[folder] = [a + int(b) for a, b in zip(folders.get(folder, [0, 0, 0]), (tried, killed, equal))]
     sums = [f"| {name} | {tried} | {killed} | {equal} | {100 * killed / max(tried, 1):.1f} % |"
             for name, (tried, killed, equal) in sorted(folders.items(), key=lambda item: item[0] == "all")]  # fmt: skip
-    SCORE.write_text("\n".join([HEAD, *sums, PARTS, *lines, ""]), encoding="utf-8")
+    parts = [HEAD, *sums, FRESH, *sorted(fresh), PARTS, *lines, ""]
+    SCORE.write_text("\n".join(parts), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.rendering import Camera
 from dexrepro.physics.world import World
+from dexrepro.robots.arm import Pose
 from dexrepro.robots.baxter import baxter, extension, palm, posture
 from dexrepro.robots.planar import planar
 
@@ -59,6 +60,16 @@ def test_arm_feels_the_contact_that_holds_it_up():
         assert {touch.link for touch in world.contacts("arm")} == {world.arm("arm").links.index("palm")}
         assert world.contact_force("arm", "wall") == pytest.approx(10.0, rel=0.05)
     np.testing.assert_allclose(run["arm.force"][-200:].mean(axis=0), -press, atol=0.5)
+
+
+def test_a_wrist_does_not_feel_what_an_upper_link_rests_on():
+    arm = planar([0.4, 0.3], [1.0, 0.5], base=Pose(rpy=(np.pi / 2, 0.0, 0.0)))
+    with World(gravity=(0, 0, -9.81)) as world:
+        world.add_arm("arm", arm, [0.0, 1.2], contacts=True)
+        world.add_box("post", (0.06, 0.2, 0.2), (0.25, 0.0, -0.121))
+        run = world.run(0.5, {"arm": lambda s: (np.array([0.0, 0.5 * 9.81 * 0.15 * np.cos(1.2)]), np.ones(2))})
+        assert world.contact_force("arm", "post") > 5.0
+    np.testing.assert_allclose(run["arm.force"][-1], 0, atol=1e-9)
 
 
 def test_distance_is_measured_though_contacts_are_off():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dexrepro.physics.model import RigidBodyModel
-from dexrepro.physics.servo import PlanarServo, PoseServo
+from dexrepro.physics.servo import JointServo, PlanarServo, PoseServo
 from dexrepro.physics.world import World
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.inverse_kinematics import nearest
@@ -27,6 +27,19 @@ def test_an_arm_follows_a_pose_and_carries_a_known_force():
         )
     wanted = np.array([target(t) for t in run.time])
     assert np.linalg.norm(run["arm.tip"] - wanted, axis=1)[250:].max() < 2e-3
+
+
+def test_a_joint_servo_goes_along_a_reference_of_constant_rate():
+    arm = planar([0.5, 0.3], [1.5, 0.9])
+    servo, start, rate = JointServo(RigidBodyModel(arm), 40.0), np.array([0.3, 0.8]), np.array([0.5, -0.4])
+    servo.reset(start)
+    servo.refer(0.0, start, rate)
+    with World(gravity=(0, 0, 0)) as world:
+        world.add_arm("arm", arm, start)
+        run = world.run(0.5, {"arm": servo})
+    np.testing.assert_allclose(run["arm.position"][-1], start + run.time[-1] * rate, atol=1e-3)
+    servo.refer(0.5, start, rate, np.array([1.0, 2.0]))
+    np.testing.assert_array_equal(servo.compensation, [1, 2])
 
 
 @pytest.mark.parametrize(("gain", "arrives"), [(20.0, True), (-20.0, False)])

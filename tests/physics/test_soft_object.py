@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from dexrepro.physics.soft_object import Cushion, SoftObject
+from dexrepro.physics.soft_object import Cushion, SoftObject, _across
 from dexrepro.physics.world import World
 from dexrepro.robots.planar import planar
 
@@ -13,6 +13,9 @@ def test_cushion_relaxes_to_its_elastic_force_and_never_pulls():
     forces = [cushion.force(0.05) for _ in range(40_000)]
     assert forces[-1] == pytest.approx(2 * 100.0 * 0.05, rel=1e-3)
     assert forces[0] == pytest.approx(2 * 100.0 * 0.05 * 2.2, rel=0.02)
+    for seconds in (0.1, 1.0, 6.0):
+        held = 2 * 100.0 * 0.05 * (1 + np.exp(-seconds / 0.05) + 0.2 * np.exp(-seconds / 4.0))
+        assert forces[round(seconds / 1e-3)] == pytest.approx(held, rel=5e-3)
     assert cushion.force(-0.01) == 0.0
     assert cushion.force(0.001) == 0.0  # the slow branch has not come back yet
 
@@ -20,7 +23,7 @@ def test_cushion_relaxes_to_its_elastic_force_and_never_pulls():
 def test_cushion_works_on_batches():
     members = [Cushion(100.0, 1e-3, **SOFT) for _ in range(2)]
     batch = Cushion(100.0, 1e-3, **SOFT)
-    for x in (0.01, 0.02, -0.01):
+    for x in (0.002, 0.01, 0.02, -0.01):
         np.testing.assert_allclose(
             batch.force(np.array([x, 0.5 * x])), [m.force(share * x) for m, share in zip(members, (1.0, 0.5))]
         )
@@ -32,7 +35,7 @@ def held_body(friction: float, duration: float = 1.0, squeeze: float = 0.1):
         for name, x in (("left", 0.0), ("right", 0.4)):
             arm = planar((0.1,), (1e6,), base=(x - 0.1, 0.0), effort=1e9)
             world.add_arm(name, arm, np.zeros(1))
-        world.add_sphere("ball", 0.05, (0.2, 0.0, 0.0), mass=0.3, collides=False)
+        world.add_sphere("ball", 0.05, (0.2, 0.0, 0.0), mass=0.3, collides=False, inertia=[0.01] * 3)
         cushions = (Cushion(100.0, 1e-3, **SOFT), Cushion(100.0, 1e-3, **SOFT))
         world.add(
             SoftObject("grip", "ball", ("left", "right"), cushions, length=0.4 + squeeze, friction=friction,
@@ -53,3 +56,16 @@ def test_without_enough_friction_the_body_slips_and_falls():
     run = held_body(friction=0.1)
     assert run["ball.pose"][-1, 2] < -0.1
     assert run["grip.slip"][-1] > 0.1
+    fallen = -run["ball.pose"][:, 2]
+    limit = 0.1 * run["grip.force_left"]
+    late = slice(300, None)
+    np.testing.assert_allclose(  # what is fallen but for the elastic give, on both sides
+        np.diff(run["grip.slip"][late]), np.diff(2 * (fallen - limit / 500.0)[late]), rtol=0.05
+    )
+
+
+def test_a_part_across_a_line_has_none_along_it():
+    line = (0.48, 0.6, 0.64)
+    across = np.array(_across((1.0, -2.0, 3.0), line))
+    assert across @ line == pytest.approx(0)
+    np.testing.assert_allclose(np.cross(across, line), np.cross((1.0, -2.0, 3.0), line))

@@ -1,5 +1,7 @@
 """Closed-loop inverse kinematics reaches the workspace and stays within limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -122,3 +124,32 @@ def test_the_nearest_posture_leaves_no_pull_in_the_null_space():
     np.testing.assert_allclose(forward(arm, q)[0], place, atol=1e-8)
     free = np.linalg.svd(jacobian(arm, q))[2][-1]
     assert abs(free @ (home - q)) < 1e-6 < np.abs(home - q).max()
+
+
+def slow(arm, speed):
+    return replace(arm, joints=tuple(replace(joint, velocity=speed) for joint in arm.joints))
+
+
+def test_the_other_joints_take_over_what_a_joint_at_its_limit_cannot_do():
+    q, twist = np.array([0.7, 0.9, 0.8]), np.array([0.02, -0.3, 0.0])
+    free = InverseKinematics(BOOK, damping=0.0)
+    free.reset(q)
+    free(forward(BOOK, q)[0], velocity=twist)
+    fastest = np.abs(free.velocity).max()
+    for speed in (0.9 * fastest, 2 * fastest):
+        for redistribute in (True, False):
+            held = InverseKinematics(slow(BOOK, speed), damping=0.0, redistribute=redistribute)
+            held.reset(q)
+            held(forward(BOOK, q)[0], velocity=twist)
+            assert np.abs(held.velocity).max() <= speed + 1e-12
+            if redistribute:
+                np.testing.assert_allclose(jacobian(BOOK, q)[:2] @ held.velocity, twist[:2], atol=1e-9)
+            else:
+                np.testing.assert_allclose(held.velocity, np.clip(free.velocity, -speed, speed), atol=1e-12)
+
+
+def test_a_stretched_arm_cannot_be_drawn_in_without_another_start():
+    arm, goal = ARMS["planar 2"], (0.2, 0.0, 0.0)
+    with pytest.raises(Unreachable):
+        solve(arm, goal, start=(0.0, 0.0), restarts=0)
+    np.testing.assert_allclose(forward(arm, solve(arm, goal, start=(0.0, 0.0)))[0], goal, atol=2e-6)

@@ -273,6 +273,10 @@ def test_a_follower_off_the_chain_stands_at_its_offset(path: Path) -> None:
     turned = from_urdf(str(path), "tip")
     assert turned.links[1].mass == plain.links[1].mass
     assert turned.links[1].com != pytest.approx(plain.links[1].com, abs=1e-6)
+    sliding = '"camera" type="prismatic"><axis xyz="0 2 0"/><mimic joint="else" offset="0.3"/>'
+    path.write_text(URDF.replace('"camera" type="fixed">', sliding))
+    body, moved = plain.links[1], from_urdf(str(path), "tip").links[1]
+    np.testing.assert_allclose(np.subtract(moved.com, body.com), [0, 0.3 * 0.2 / body.mass, 0], atol=1e-12)
 
 
 OBJ = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.3\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n"

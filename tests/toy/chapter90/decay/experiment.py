@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import shutil
 import signal
 import sys
 import threading
@@ -62,6 +63,11 @@ FAULTS = {
     "fork": fork,
     "fork_on": os.fork,  # and the child simulates on
     "close": lambda: os.closerange(3, 64),
+    "elsewhere": lambda: os.chdir("/"),
+    "delete": lambda: shutil.rmtree("results"),
+    "say": lambda: print("a letter \udcff that is none", file=sys.stderr),
+    "mute": lambda: (sys.stdout.close(), os.close(2)),
+    "mask": lambda: os.umask(0o777),
     "forever": forever,
     "deaf": lambda: (signal.signal(signal.SIGTERM, signal.SIG_IGN), forever()),
 }
