@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from dexrepro import chapters, cli
+from dexrepro import chapters, cli, crosscheck
 from dexrepro.provenance import commented_leaves, parse_provenance
 
 ROOT = Path(__file__).parents[1]
@@ -32,7 +32,7 @@ CODE = re.compile(r"(``.*?``|:\w+:`.*?`|::$)", re.DOTALL)
 
 def write(docs: Path) -> None:
     """Write all pages into docs/reference; one that is as it was stays untouched."""
-    for name, content in (*_api(), *_commands(), *_configuration(), *_formats(docs)):
+    for name, content in (*_api(), *_commands(), *_configuration(), *_formats(docs), *_engines()):
         page = docs / "reference" / f"{name}.md"
         page.parent.mkdir(exist_ok=True)
         if not page.exists() or page.read_text("utf-8") != content:
@@ -147,6 +147,29 @@ def _formats(docs: Path) -> Pages:
         if rows:
             text.append("| key | type | |\n| --- | --- | --- |\n" + "\n".join(rows))
     yield "formats", "\n\n".join(text) + "\n"
+
+
+def _engines() -> Pages:
+    found = crosscheck.stored(crosscheck.table(Path(), shipped=True))
+    claims = sum(len(item.claims) for item in found)
+    turned = [f"{key} is {item.claims[key][0]} under PyBullet, {item.claims[key][1]} under MuJoCo"
+              for item in found for key in item.turned]  # fmt: skip
+    text = (
+        f"# The engines compared\n\n{len(found)} experiments simulate arms. Of {sum(item.compared for item in found)} "
+        f"numbers, {sum(len(item.metrics) for item in found)} leave the tolerance of their baseline under MuJoCo; of "
+        f"{claims} claims, {claims - len(turned)} have the same verdict under both engines"
+        f"{': ' if turned else ''}{'; '.join(turned)}. Why: [Two physics engines](../how-to/engines.md).\n"
+    )
+    for item in found:
+        text += f"\n## {item.experiment}\n\nChapter {item.chapter}, MuJoCo {item.version}: {item.compared} numbers, "
+        text += f"{len(item.metrics)} outside their tolerance; {len(item.claims)} claims, {len(item.turned)} differ.\n"
+        if item.metrics:
+            text += "\n| number | PyBullet | MuJoCo | among a study's samples |\n| --- | --- | --- | --- |\n"
+        for entry in item.metrics:
+            spread = "{:.4g} … {:.4g}".format(*entry.spread) if entry.spread else ""
+            values = (f"{value:.4g}" if value is not None else "undefined" for value in (entry.reference, entry.other))
+            text += f"| `{entry.name.removeprefix(item.experiment + '.')}` | {' | '.join(values)} | {spread} |\n"
+    yield "engines", text
 
 
 def _properties(schema: dict[str, Any], outer: str = "") -> Iterator[str]:

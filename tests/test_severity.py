@@ -50,15 +50,15 @@ def test_stored_verdicts_follow_from_stored_metrics(number: str) -> None:
 
 STOPPED = "a run is stopped at its bound, so that 1 says that it was met and is no measured number"
 TURNING = {
-    "C1.32": "a stiff object lets go and is caught again, which multiplies the smallest change",
-    "C3.10b": "a free tool axis meets a joint limit in one of two directions, with a perturbation or without",
+    "C1.32": "on a stiff object the law goes on oscillating, and how far follows the smallest change of the start",
+    "C3.10b": "a free tool axis meets a joint limit, where the smallest change decides how far the arm goes",
     "C3.14b": "limited torques settle after 3 s or not within the run, and the claim fails either way",
     "C3.19": "trained in single precision; by construction",
     "C4.03": "its rivals chatter, and a tolerance is ten times the change seen, at which it does not turn",
     "C4.13": "the control ties in both errors; all three numbers at the ends of their tolerances would pass it",
     "C4.28": "the rival's error is reproducible to 3 %, within which the reading ties",
     "C5.40": "a share of shapes equals its bound, which is not more; a count is exact",
-    "C6.38": STOPPED,
+    "C6.38": "the path rides the barrier, which keeps it inside by less than any tolerance; no group violates",
     "C8.01": STOPPED,
     "C8.12": STOPPED,
     "C8.16": STOPPED,

@@ -141,6 +141,8 @@ def test_no_caption_title_note_or_label_types_a_number_of_a_run_or_a_parameter(n
         for place, text in (*texts_of(experiment, number), *labels_of(folder / "figures.py")):
             quoted = QUOTED.get(place.partition(":")[0], set())
             found += [(place, text[:70], item) for item in typed(text, known) if item not in quoted]
+    shared = [label for path in chapter.folder.glob("*.py") if path.name != "errata.py" for label in labels_of(path)]
+    found += [(place, text[:70], item) for place, text in shared for item in typed(text, printed(number) | CONVENTIONS)]
     for item in chapter.errata:
         for text in (item.summary, item.correction):
             values = set(typed(text, printed(number))) - QUOTED.get(item.id, set())

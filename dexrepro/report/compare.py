@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -63,7 +64,7 @@ def write_page(a: Path, b: Path, page: Path) -> None:
             a=str(a),
             b=str(b),
             experiment=names[0],
-            parameters=_differing(*parameters),
+            parameters=_of_their_own(_differing(*parameters)),
             metrics=[
                 (name, words.number(x), words.number(y)) for name, x, y in sorted(metrics, key=_change, reverse=True)
             ],
@@ -91,6 +92,13 @@ def _differing(first: Mapping[str, Any], second: Mapping[str, Any]) -> list[tupl
     """(name, value, value) of what differs; None where one lacks it."""
     names = dict.fromkeys([*first, *second])
     return [(name, first.get(name), second.get(name)) for name in names if first.get(name) != second.get(name)]
+
+
+def _of_their_own(rows: list[tuple[str, Any, Any]]) -> list[tuple[str, Any, Any]]:
+    """The rows without those of cases that only follow what the experiment says for all of them."""
+    shared = {(name, str(x), str(y)) for name, x, y in rows}
+    return [row for row in rows if (re.sub(r"^cases\.\w+\.", "", row[0]), str(row[1]), str(row[2])) not in shared
+            or not row[0].startswith("cases.")]  # fmt: skip
 
 
 def _change(row: tuple[str, Any, Any]) -> float:

@@ -96,7 +96,8 @@ def _files() -> dict[Path, str]:
     library = Path(__file__).parent.parent
     found = {}
     if not all(map(chapters.is_added, chapters.numbers())):
-        found = {path: path.stem for path in library.rglob("*.py") if not path.is_relative_to(library / "chapters")}
+        apart = (library / "chapters", library / "report")  # the report's own mentions are examples
+        found = {path: path.stem for path in library.rglob("*.py") if not any(map(path.is_relative_to, apart))}
     for number in chapters.numbers():
         found |= {path: path.stem for path in chapters.load(number).folder.rglob("*.py")}
         found |= {path: name for name, path in config_files(number).items()}

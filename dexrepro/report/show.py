@@ -201,7 +201,10 @@ def _about_erratum(number: str, erratum: Erratum, results: Path) -> Iterator[str
 def _equation(word: str, results: Path) -> Iterator[str]:
     if re.fullmatch(r"\d+\.\d+[a-z]?", word):
         mentions = [mention for mention in equations.index() if mention.equation == word]
-        yield from [f"Equation ({word})"] if mentions else []
+        section, latex = equations.printed().get(word, ("", ""))
+        yield from (
+            [f"Equation ({word})" + (f", Sect. {section}:  {latex}" if latex else "")] if mentions or latex else []
+        )
         for mention in mentions:
             yield f"  {mention.kind:<10}  {sources.label(mention.path)}:{mention.line}  {mention.name}: {mention.text}"
 

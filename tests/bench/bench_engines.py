@@ -1,4 +1,4 @@
-"""Wall time of a step under each engine, in turn in the same run: alone, controlled, and in contact.
+"""CPU time of a step under each engine, in turn in the same run: alone, controlled, and in contact.
 
 Run by ``make bench``. Every time is the shortest of several; what is printed is microseconds a step, and how many times
 as long PyBullet takes.
@@ -65,9 +65,9 @@ def test_time_of_a_step(scene, capsys: pytest.CaptureFixture[str]) -> None:
     for _ in range(REPEATS):
         for word in best:
             engine.use(word)
-            begin = time.perf_counter()
+            begin = time.process_time()
             scene().close()
-            best[word] = min(best[word], (time.perf_counter() - begin) / STEPS)
+            best[word] = min(best[word], (time.process_time() - begin) / STEPS)
     engine.use(engine.default())
     first, *_, last = best.values()
     spent = "   ".join(f"{engine.ENGINES[word]} {1e6 * value:6.1f} us" for word, value in best.items())

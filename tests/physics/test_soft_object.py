@@ -35,7 +35,7 @@ def held_body(friction: float, duration: float = 1.0, squeeze: float = 0.1):
         for name, x in (("left", 0.0), ("right", 0.4)):
             arm = planar((0.1,), (1e6,), base=(x - 0.1, 0.0), effort=1e9)
             world.add_arm(name, arm, np.zeros(1))
-        world.add_sphere("ball", 0.05, (0.2, 0.0, 0.0), mass=0.3, collides=False)
+        world.add_sphere("ball", 0.05, (0.2, 0.0, 0.0), mass=0.3, collides=False, inertia=[0.01] * 3)
         cushions = (Cushion(100.0, 1e-3, **SOFT), Cushion(100.0, 1e-3, **SOFT))
         world.add(
             SoftObject("grip", "ball", ("left", "right"), cushions, length=0.4 + squeeze, friction=friction,

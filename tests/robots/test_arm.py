@@ -5,11 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dexrepro.physics.engines.pybullet import bullet, connect, load_arm
 from dexrepro.physics.loading import LoadingError
 from dexrepro.robots.arm import Arm, InvalidInertia, Joint, Link, Pose, Shape, Tool
 from dexrepro.robots.baxter import _data, baxter
 from dexrepro.robots.planar import planar
+
+bullet = pytest.importorskip("pybullet")
+
+from dexrepro.physics.engines.pybullet import connect, load_arm  # noqa: E402
 
 
 @pytest.mark.parametrize("inertia", [(1e-3, 0, 0, 1e-3, 0, 3e-3), (-1e-3, 0, 0, 1e-3, 0, 1e-3)])

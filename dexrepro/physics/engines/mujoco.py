@@ -605,6 +605,7 @@ def _principal(inertia: Array) -> tuple[Array, Array]:
     moments, axes = np.linalg.eigh(inertia)
     if np.linalg.det(axes) < 0:
         axes[:, 0] = -axes[:, 0]
+    moments = np.maximum(moments, 1e-12)  # a point mass has none, a body of MuJoCo must have some
     moments[2] = min(moments[2], moments[0] + moments[1])  # rounding breaks the triangle inequality of a thin rod
     return moments, _quaternion(axes)
 
