@@ -299,8 +299,8 @@ def update_chapter(
     foreign = [plan.experiment for plan in plans if REFERENCE != plan.engine in plan.versions]
     if foreign and not chapters.is_added(chapter):
         raise InputError(
-            f"the baselines of {', '.join(foreign)} are PyBullet's, which is not installed here: --update would replace "
-            "them by numbers of MuJoCo's"
+            f"the baselines of {', '.join(foreign)} are PyBullet's, which is not installed here: --update would "
+            "replace them by numbers of MuJoCo's"
         )
     moved = [plan_chapter(chapter, overrides, perturbation=size)[0] for size in PERTURBATIONS]
     for number, group in enumerate(moved):
