@@ -174,7 +174,8 @@ class Claim:
         was searched before it stands.
     by_construction: the generator that has the effect built in. not_testable: why nothing can be measured.
     note: what a reader must know beside the verdict; ``{experiment.case.metric:.3g}`` in it is filled from the run, a
-        parameter ``{experiment.key}`` or ``{experiment.cases.case.key}`` from its configuration.
+        parameter ``{experiment.key}`` or ``{experiment.cases.case.key}`` from its configuration; ``{.case.metric}`` is
+        one of the claim's own experiment.
     beside: what another experiment of the chapter shows of it, filled likewise where that was run, else left out.
     """
 
@@ -200,6 +201,7 @@ class Claim:
             raise ValueError(f"{self.id}: give either a predicate or the reason why it cannot be tested")
         if self.control is not None and self.no_control:
             raise ValueError(f"{self.id}: it has a control, so there is no reason why it could have none")
+        object.__setattr__(self, "note", self.note.replace("{.", f"{{{self.experiment}."))
 
     @property
     def predicates(self) -> tuple[Predicate, ...]:
@@ -355,3 +357,14 @@ class Erratum:
     def __post_init__(self) -> None:
         if self.kind not in ERRATUM_KINDS:
             raise ValueError(f"{self.id}: kind '{self.kind}' is none of {', '.join(ERRATUM_KINDS)}")
+
+
+def _of_kind(kind: str) -> Callable[..., Erratum]:
+    def erratum(id: str, equation: str, *more: Any, **named: Any) -> Erratum:
+        return Erratum(id, equation, kind, *more, **named)
+
+    return erratum
+
+
+error, gap, reading, slip = map(_of_kind, ERRATUM_KINDS)
+"""An ``Erratum`` of each kind, called without it."""

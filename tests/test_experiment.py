@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dexrepro.claims import TIE, Claim, Erratum, about, every, greater, less, ordered, within
+from dexrepro.claims import TIE, Claim, Erratum, about, every, greater, less, ordered, slip, within
 from dexrepro.experiment import Config, changed
 
 numbers = st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6)
@@ -68,6 +68,15 @@ def test_claims_about_one_figure_share_it_and_its_place_unless_they_say_another(
     holds = less("e.a.x", 1.0)
     assert fig_2_5("C2.90", "it holds", holds) == Claim("C2.90", "2.5", "it holds", holds, where="2.4.1.1")
     assert fig_2_5("C2.91", "it holds", holds, where="2.6").where == "2.6"
+
+
+def test_a_note_names_the_metrics_of_its_own_experiment_by_what_follows_the_dot() -> None:
+    claim = Claim("C2.90", "2.5", "it holds", less("e.a.x", 1.0), note="{.a.x:.1f}, elsewhere {other.a.x:.1f}")
+    assert claim.note == "{e.a.x:.1f}, elsewhere {other.a.x:.1f}"
+
+
+def test_an_erratum_of_a_kind_is_that_erratum() -> None:
+    assert slip("E9.01", "(9.1)", "a sign", "+") == Erratum("E9.01", "(9.1)", "slip", "a sign", "+")
 
 
 def test_an_erratum_needs_one_of_the_four_kinds() -> None:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Erratum
+from dexrepro.claims import error, reading, slip
 
 CIRCLE, OBJECT, SPONGE = "circle_tracking", "unknown_object", "sponge"
 
 ERRATA = (
-    Erratum(
+    reading(
         "E8.01",
         "8.4.1",
-        "reading",
         "The pose of the arm is not stated. Elbow-down and with rate 1 the law holds less in the middle of "
         "the y bound than the load at the start: the arm comes to rest near the bound, which a sampling "
         "time of {circle_tracking.step:g} s does not survive.",
@@ -19,18 +18,16 @@ ERRATA = (
         "circle_tracking.arm.elbow=1",
         (f"{CIRCLE}.down_unit.violated_at", f"{CIRCLE}.down_unit_fine.bound_used"),
     ),
-    Erratum(
+    reading(
         "E8.02",
         "(8.30)",
-        "reading",
         "phi changes its sign beyond the bound, and sqrt(2) iota is a stable false equilibrium: after a violation, "
         "which only sampling can bring about, a run may look settled.",
         "A violation ends the run and is reported.",
     ),
-    Erratum(
+    reading(
         "E8.03",
         "(8.38)-(8.40)",
-        "reading",
         "The laws have no adaptation rate. With rate 1 and leakage 5 the networks supply "
         "{circle_tracking.broad_unit.network_force:.2g} N, with tuned rates {circle_tracking.broad.network_force:.2g} "
         "N. (8.36) is consistent with rate 1; rates may be unprinted.",
@@ -43,18 +40,16 @@ ERRATA = (
             f"{CIRCLE}.orbit_left_unit.bound_used",
         ),
     ),
-    Erratum(
+    slip(
         "E8.04",
         "(8.31)",
-        "slip",
         "M_x + C_x + G_x stands where the estimates and their factors belong; the sentence after it and (8.35) have "
         "them.",
         "D alpha' + C alpha + G, all estimated.",
     ),
-    Erratum(
+    error(
         "E8.05",
         "(8.27), (8.31)",
-        "error",
         "tau_e acts on the robot with a plus in (8.1), (8.6) and with a minus in (8.5), (8.27): the plus in (8.31) "
         "cancels it with (8.27) and doubles it with (8.1). In the simulation the error in x is "
         "{unknown_object.force_sign_printed.max_error_x:.2f} mm with it, {unknown_object.soft.max_error_x:.2f} mm "
@@ -63,32 +58,28 @@ ERRATA = (
         "unknown_object.law.printed=true",
         (f"{OBJECT}.force_sign_printed.max_error_x", f"{OBJECT}.soft.max_error_x"),
     ),
-    Erratum(
+    error(
         "E8.06",
         "(8.35)",
-        "error",
         "With the tilde as hat minus star the approximation error enters with a minus.",
         "-E; harmless, as Kr > |E|.",
     ),
-    Erratum(
+    error(
         "E8.07",
         "(8.36)-(8.42)",
-        "error",
         "Sums start at 0; gamma contains 2 k1 where the barrier part decays with exactly k1; beta is lost from "
         "(8.42), gamma and nu; (8.41) is an inequality.",
         "gamma = min(k1, 2 lmin(Kp)/lmax(M_x), beta), nu = beta/2 |W*|^2. Boundedness itself is not touched.",
     ),
-    Erratum(
+    reading(
         "E8.08",
         "(8.21)",
-        "reading",
         "[W_b | 0, 0] adds two zeros, a node adds three features; the zeros may be blocks.",
         "Three zeros.",
     ),
-    Erratum(
+    error(
         "E8.09",
         "(8.8)",
-        "error",
         "s' = M s with x_d = N s cannot generate the circle of (8.46), and M = -1 contradicts it. Regressing on s = "
         "x_d/N gives a gain of the wrong sign. Which s the authors regressed on is not stated.",
         "An auxiliary s that obeys s' = M s in the regression (the identity holds for any), the desired path in the "
@@ -96,38 +87,34 @@ ERRATA = (
         "unknown_object.interaction.gain.exosystem=null",
         (f"{OBJECT}.soft.desired_path_gain_x", f"{OBJECT}.soft.gain_x"),
     ),
-    Erratum(
+    reading(
         "E8.10",
         "(8.6), 8.4.3",
-        "reading",
         "The object's force has the offset 0.22 m, which (8.6) lacks: x must count from the surface, whose position "
         "must then be known. In absolute coordinates the gain is wrong and the bound is violated.",
         "x and x_d from the surface found by touch.",
         "unknown_object.interaction.origin=0.0",
         (f"{OBJECT}.absolute.violated_at", f"{OBJECT}.soft.surface_low_gain_x", f"{OBJECT}.soft.surface_high_gain_x"),
     ),
-    Erratum(
+    error(
         "E8.11",
         "Algorithm 8.1",
-        "error",
         "tau_e = K_0 zeta (three times) against tau_e = -K zeta above (8.9); K_0 stabilises only with the minus. With "
         "tau_e as the force on the environment the plus would be right: the clash of E8.05.",
         "Minus.",
         "unknown_object.interaction.printed=true",
         (f"{OBJECT}.plus.violated_at",),
     ),
-    Erratum(
+    error(
         "E8.12",
         "(8.12), (8.13)",
-        "error",
         "Q + K^T R K^T does not multiply; indices k and m are mixed; the list of P lacks 2 P_13 ... 2 P_1p (harmless "
         "for p = 2, perhaps lost in extraction).",
         "Q_m = Q' + K_m^T R K_m and all upper entries of P.",
     ),
-    Erratum(
+    error(
         "E8.14",
         "8.5",
-        "error",
         "U = 0.001 > 0 is a growing mode that cannot be stabilised: the Riccati equation has no stabilising solution. "
         "Ce = -0.4 is negative damping (a reading: with tau_e on the environment only A has the wrong sign, and the "
         "gain is {sponge.lqr_printed_environment.gain_x:.0f} in place of {sponge.lqr.gain_x:.0f} N/m). With tau_e on "
@@ -136,20 +123,18 @@ ERRATA = (
         "+sponge.cases.as_printed={interaction:{gain:{_target_:dexrepro.control.impedance_learning.ConstantGain,gain:{_target_:dexrepro.control.interaction_optimum.model_gain,model:[7,-0.4,0.001],cost:${sponge.cost}}}}}",
         (f"{SPONGE}.lqr_printed.stopped_at", f"{SPONGE}.lqr_printed_environment.final_compression"),
     ),
-    Erratum(
+    reading(
         "E8.16",
         "8.5",
-        "reading",
         "Equal thresholds for D and G with the same rule and input give equal counts, 14 and 38 are printed: their "
         "inputs, or m and beta_1, must differ. They are not printed.",
         "Task-space inputs; joint inputs would make more nodes.",
         "",
         (f"{SPONGE}.learned.nodes_d", f"{SPONGE}.learned.nodes_g", f"{SPONGE}.learned.joint_nodes_d"),
     ),
-    Erratum(
+    reading(
         "E8.17",
         "8.5",
-        "reading",
         "At the printed 50 Hz the velocity loop is unstable on this model, with "
         "{sponge.cases.at_200_hz.control_period:g} s between samples it is not. The real robot has inner loops and "
         "friction that the model lacks.",
@@ -157,17 +142,15 @@ ERRATA = (
         "sponge.control_period=0.02",
         (f"{SPONGE}.at_50_hz.stopped_at", f"{SPONGE}.at_200_hz.bound_used"),
     ),
-    Erratum(
+    error(
         "E8.18",
         "(8.2)-(8.4)",
-        "error",
         "J is said to be k x d and is inverted; it is d x k, and not square for the Baxter arm.",
         "(J M^-1 J^T)^-1 for the task inertia.",
     ),
-    Erratum(
+    slip(
         "E8.19",
         "8.4",
-        "slip",
         "Case 1 cites Fig. 8.8c, d (it is Fig. 8.6); RBFNN and FNN name the same network; subsection II-B and Theorem "
         "1 do not exist.",
     ),

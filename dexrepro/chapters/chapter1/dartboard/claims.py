@@ -18,7 +18,7 @@ CLAIMS = (
         ordered(*(f"dartboard.{case}.general_radius" for case in ("scale1", "scale2", "scale3", "book", "scale6"))),
         by_construction=OPERATOR,
         note="Median distance of the hits from the centre for constant scales of 1, 2, 3, "
-        "{dartboard.mappings.general.factor:g} and 6.",
+        "{.mappings.general.factor:g} and 6.",
     ),
     fig_1_14(
         "C1.14",
@@ -46,11 +46,10 @@ CLAIMS = (
         readings={"the scale set by the unfiltered speed of the hand": _nobody_lower("book")},
         searched="a low-pass of the hand's speed, half the tremor, other seeds, other rings",
         where="1.5.2.1",
-        note="The hand's speed sets the scale through a low-pass of 2 Hz: {dartboard.smooth.wins} higher, "
-        "{dartboard.smooth.ties} equal, {dartboard.smooth.losses} lower. Unfiltered, {dartboard.book.wins}, "
-        "{dartboard.book.ties} and {dartboard.book.losses}: the tremor alone then raises the scale while some aim. "
-        "The control is a constant scale of 3; it turns round for a smaller constant scale (T1.D), which does not "
-        "match the whole workspace.",
+        note="The hand's speed sets the scale through a low-pass of 2 Hz: {.smooth.wins} higher, {.smooth.ties} equal, "
+        "{.smooth.losses} lower. Unfiltered, {.book.wins}, {.book.ties} and {.book.losses}: the tremor alone then "
+        "raises the scale while some aim. The control is a constant scale of 3; it turns round for a smaller constant "
+        "scale (T1.D), which does not match the whole workspace.",
     ),
     Claim(
         "C1.36",
@@ -66,12 +65,10 @@ CLAIMS = (
         },
         searched="constant scales of 1 to 6, with and without a low-pass of the hand's speed",
         where="1.5.2.1",
-        note="Largest displacement of the hand: {dartboard.book.proposed_excursion:.3f} m, and "
-        "{dartboard.book.general_excursion:.3f} m with the general mapping, whose scale of "
-        "{dartboard.mappings.general.factor:g} is above the adaptive one's mean between boards, "
-        "{dartboard.book.scale_far:.2g}; {dartboard.scale3.general_excursion:.3f} and "
-        "{dartboard.scale2.general_excursion:.3f} m with constant scales of 3 and 2, between which its precision "
-        "lies.",
+        note="Largest displacement of the hand: {.book.proposed_excursion:.3f} m, and {.book.general_excursion:.3f} m "
+        "with the general mapping, whose scale of {.mappings.general.factor:g} is above the adaptive one's mean "
+        "between boards, {.book.scale_far:.2g}; {.scale3.general_excursion:.3f} and {.scale2.general_excursion:.3f} m "
+        "with constant scales of 3 and 2, between which its precision lies.",
     ),
 )
 

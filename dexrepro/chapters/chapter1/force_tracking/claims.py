@@ -39,9 +39,8 @@ CLAIMS = (
         control=_smallest("integral"),
         printed=less(f"{TRACKING}.c1_printed.rmse", f"{TRACKING}.c1_force.rmse"),
         note="Without its weights the law is an integral of the force error. It has the smallest error of the three as "
-        "well: {force_tracking.c1_integral.rmse:.3f}, {force_tracking.c2_integral.rmse:.3f} and "
-        "{force_tracking.c3_integral.rmse:.3f} N against {force_tracking.c1_proposed.rmse:.3f}, "
-        "{force_tracking.c2_proposed.rmse:.3f} and {force_tracking.c3_proposed.rmse:.3f} N. The win over the whole run "
+        "well: {.c1_integral.rmse:.3f}, {.c2_integral.rmse:.3f} and {.c3_integral.rmse:.3f} N against "
+        "{.c1_proposed.rmse:.3f}, {.c2_proposed.rmse:.3f} and {.c3_proposed.rmse:.3f} N. The win over the whole run "
         "comes from the gain, the win after 5 s from the weights (C1.26, C1.29).",
     ),
     fig_1_10(
@@ -60,8 +59,8 @@ CLAIMS = (
         control=_robust("integral", "integral_spread"),
         printed=_printed("rmse_late", 0.5),
         note="Spread of the whole-run error, which the common start dominates, and an error after 5 s below 5 % of the "
-        "desired force. That late error does depend on both: {force_tracking.c1_proposed.rmse_late:.2f}, "
-        "{force_tracking.c2_proposed.rmse_late:.2f} and {force_tracking.c3_proposed.rmse_late:.2f} N.",
+        "desired force. That late error does depend on both: {.c1_proposed.rmse_late:.2f}, "
+        "{.c2_proposed.rmse_late:.2f} and {.c3_proposed.rmse_late:.2f} N.",
     ),
     fig_1_10(
         "C1.05",
@@ -72,7 +71,7 @@ CLAIMS = (
         readings={"within 5 %, the band of C1.04 and C1.07": _below("proposed", "rmse_late", 0.5)},
         searched="the tolerance, 1 to 5 % of the desired force, and the start of what counts as late",
         where="1.4",
-        note="With a constant stiffness and a partner of constant velocity it is {force_tracking.c1_proposed.rmse_late:"
+        note="With a constant stiffness and a partner of constant velocity it is {.c1_proposed.rmse_late:"
         ".2g} N. Where they vary it does not vanish: constant weights that predict a smooth contact position exist (a "
         "difference quotient: thousands a second), but the weights stay below 0.1 and act as an integral of the force "
         "error of gain alpha N / L with N = Z.Z. What such a proportional-integral law leaves is what is seen.",

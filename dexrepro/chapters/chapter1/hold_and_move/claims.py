@@ -40,9 +40,8 @@ CLAIMS = (
         credits="the quaternion rule (1.14)",
         where="1.5.2.2",
         note="Largest rotation of one tool against the other [deg], of two torque-controlled arms: "
-        "{hold_and_move.t1_proposed.turned:.2g}, and {hold_and_move.t1_unturned.turned:.0f} where AFR keeps the "
-        "orientation it starts with. Whether it stays below the bound, which is ours, depends on object and arms "
-        "(study).",
+        "{.t1_proposed.turned:.2g}, and {.t1_unturned.turned:.0f} where AFR keeps the orientation it starts with. "
+        "Whether it stays below the bound, which is ours, depends on object and arms (study).",
     ),
     fig_1_18(
         "C1.23a",
@@ -51,8 +50,8 @@ CLAIMS = (
         control=_least("rmse", "integral"),
         printed=less(f"{HOLDING}.t1_printed.rmse", f"{HOLDING}.t1_passive.rmse"),
         note="Absolute values are set by sensor noise and object; one late sample or a stiff object turns it round. "
-        "Without its weights the law errs by {hold_and_move.t1_integral.rmse:.4f} N on the first trajectory, with them "
-        "by {hold_and_move.t1_proposed.rmse:.4f} N: at these gains they do nothing.",
+        "Without its weights the law errs by {.t1_integral.rmse:.4f} N on the first trajectory, with them "
+        "by {.t1_proposed.rmse:.4f} N: at these gains they do nothing.",
     ),
     fig_1_18(
         "C1.23b",
@@ -77,8 +76,8 @@ CLAIMS = (
         _overshoot("proposed"),
         control=_overshoot("passive"),
         printed=less(f"{HOLDING}.t1_printed.overshoot", 0.1),
-        note="Negligible: within the band of C1.24a; {hold_and_move.t3_proposed.overshoot:.1%} to "
-        "{hold_and_move.t2_proposed.overshoot:.1%} here, which is close to it (study).",
+        note="Negligible: within the band of C1.24a; {.t3_proposed.overshoot:.1%} to "
+        "{.t2_proposed.overshoot:.1%} here, which is close to it (study).",
     ),
     fig_1_18(
         "C1.25",
@@ -87,8 +86,8 @@ CLAIMS = (
         control=every(_least("settling", "integral"), _overshoot("integral")),
         credits="the adaptation law (1.29), (1.30)",
         printed=less(f"{HOLDING}.t1_printed.settling", f"{HOLDING}.t1_passive.settling"),
-        note="Without weights the law is as fast, into the band after {hold_and_move.t1_integral.settling:.2f} against "
-        "{hold_and_move.t1_proposed.settling:.2f} s, and overshoots as little. The rise is the force term's of (1.32), "
+        note="Without weights the law is as fast, into the band after {.t1_integral.settling:.2f} against "
+        "{.t1_proposed.settling:.2f} s, and overshoots as little. The rise is the force term's of (1.32), "
         "whose other terms cancel (1.29) but for W.Z; only at gains below 0.05 do the weights shorten it (T1.S).",
     ),
     ours_1_18(

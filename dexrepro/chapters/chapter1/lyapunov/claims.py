@@ -21,8 +21,7 @@ CLAIMS = (
         printed=less("lyapunov.printed.rising", 1e-9),
         searched="perfect tracking and tracking through (1.26), steps of 0.1 ms and less",
         note="Eq. (1.31) puts the follower's own position in place of the contact position, which the proof may not: V "
-        "rises in {lyapunov.built.rising:.1%} of the steps, although it ends at {lyapunov.built.end:.2g} of "
-        "{lyapunov.built.start:.0f}.",
+        "rises in {.built.rising:.1%} of the steps, although it ends at {.built.end:.2g} of {.built.start:.0f}.",
     ),
     fig_1_10(
         "C1.34",
@@ -32,10 +31,9 @@ CLAIMS = (
         printed=less("lyapunov.growth_printed.growth_0p12", 1.0),
         where="1.4",
         note="Largest force error at the end against that after a third of the run, for the smallest of five gains: "
-        "{lyapunov.growth.growth_0p12:.2f} over a short run, in which it only grows, "
-        "{lyapunov.growth_long.growth_0p12:.2g} over one six times as long (E1.14). Routh's condition for the law as "
-        "built about z = 0 is N (1 - k beta) < L (L + k alpha), here L > {lyapunov.growth.bound:.3f}: below it the "
-        "error grows before it decays. The control has a negative L; with none at all the ratio is "
-        "{lyapunov.growth_long.growth_0:.2g}.",
+        "{.growth.growth_0p12:.2f} over a short run, in which it only grows, {.growth_long.growth_0p12:.2g} over one "
+        "six times as long (E1.14). Routh's condition for the law as built about z = 0 is N (1 - k beta) < L (L + k "
+        "alpha), here L > {.growth.bound:.3f}: below it the error grows before it decays. The control has a negative "
+        "L; with none at all the ratio is {.growth_long.growth_0:.2g}.",
     ),
 )

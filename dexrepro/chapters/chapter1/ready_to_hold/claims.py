@@ -39,8 +39,8 @@ CLAIMS = (
         credits="the adjustable weights (1.21)",
         where="1.3.4",
         note="It keeps clear until DFR approaches and reaches the surface within 1.5 s of it. With constant weights it "
-        "presses in by {ready_to_hold.constant.clearance:.3f} m before DFR comes, with the partner's field alone by "
-        "{ready_to_hold.partner_only.clearance:.3f} m; the other two fields alone keep clear and never touch.",
+        "presses in by {.constant.clearance:.3f} m before DFR comes, with the partner's field alone by "
+        "{.partner_only.clearance:.3f} m; the other two fields alone keep clear and never touch.",
     ),
     Claim(
         "C1.20",
@@ -51,7 +51,7 @@ CLAIMS = (
         readings={"at the same time, within 1.5 s, as in C1.19": _in_time("adjustable")},
         searched="the tolerance in time, varpi and the compliance of the field",
         where="1.5.2.1",
-        note="Right: when DFR touches, so not before. AFR comes {ready_to_hold.adjustable.own_before_partner:.1f} s "
+        note="Right: when DFR touches, so not before. AFR comes {.adjustable.own_before_partner:.1f} s "
         "before it. For any varpi below 2 the field lets AFR touch first: at a distance of r / (varpi - 1) > r. With "
         "varpi = 2, or with a third of the compliance, it touches after DFR (T1.E).",
     ),
@@ -63,8 +63,8 @@ CLAIMS = (
         control=_points("unturned"),
         credits="the quaternion rule (1.14)",
         where="1.5.2.1",
-        note="The tools' axes are opposite to within {ready_to_hold.adjustable.facing:.2f} deg; the line between the "
-        "hands lags by up to {ready_to_hold.adjustable.pointing:.1f} deg because the field follows DFR's rotation "
+        note="The tools' axes are opposite to within {.adjustable.facing:.2f} deg; the line between the "
+        "hands lags by up to {.adjustable.pointing:.1f} deg because the field follows DFR's rotation "
         "slowly. The control keeps the orientation it starts with.",
     ),
 )

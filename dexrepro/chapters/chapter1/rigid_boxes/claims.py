@@ -21,9 +21,8 @@ CLAIMS = (
         where="1.5.2.2",
         note="Three start poses a size, friction contact in three dimensions; with a gain of 0.01, our choice. The "
         "control presses as deep as gives the desired force on this contact, without feedback: it carries the boxes "
-        "too ({rigid_boxes.fixed_small.successes}, {rigid_boxes.fixed.successes} and "
-        "{rigid_boxes.fixed_large.successes} of {rigid_boxes.fixed.runs}), with a force that errs by "
-        "{rigid_boxes.fixed.rmse:.0f} N.",
+        "too ({.fixed_small.successes}, {.fixed.successes} and {.fixed_large.successes} of {.fixed.runs}), with a "
+        "force that errs by {.fixed.rmse:.0f} N.",
     ),
     Claim(
         "C1.28",

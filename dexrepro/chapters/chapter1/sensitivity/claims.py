@@ -21,8 +21,8 @@ CLAIMS = (
         printed=_mostly("printed_"),
         where="1.5.1",
         note="Counted on the holding line without arms. Without its weights the law has the smallest error as often: "
-        "{sensitivity.tracking.best_proportional_c1:.0%} of the time in case 1, with them "
-        "{sensitivity.tracking.best_c1:.0%}. With the printed definition of e_f (E1.10) contact is lost at once.",
+        "{.tracking.best_proportional_c1:.0%} of the time in case 1, with them "
+        "{.tracking.best_c1:.0%}. With the printed definition of e_f (E1.10) contact is lost at once.",
     ),
     ours_1_10(
         "C1.26",

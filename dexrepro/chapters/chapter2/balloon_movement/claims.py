@@ -28,8 +28,8 @@ CLAIMS = (
         "After adjusting, the two end effectors keep an approximately fixed distance under the proposed law.",
         _fixed_distance("proposed"),
         control=_fixed_distance("no_regulation"),
-        note="The distance scatters by {balloon_movement.proposed.distance_spread:.2g} m; without (2.8), (2.9) by "
-        "{balloon_movement.no_regulation.distance_spread:.2g} m.",
+        note="The distance scatters by {.proposed.distance_spread:.2g} m; without (2.8), (2.9) by "
+        "{.no_regulation.distance_spread:.2g} m.",
     ),
     fig_2_11(
         "C2.25",
@@ -37,12 +37,11 @@ CLAIMS = (
         _best("proposed"),
         control=_best("tuned_force"),
         credits="the movement estimation",
-        note="On the circle {balloon_movement.proposed.rmse_circle:.2f} N against "
-        "{balloon_movement.force.rmse_circle:.2f} and {balloon_movement.passive.rmse_circle:.2f} N, all with a force "
-        "that fades in. The control is an integral of the force error, which estimates no movement: "
-        "{balloon_movement.tuned_force.rmse_circle:.2f} N, as the proposed law with tuned gains, "
-        "{balloon_movement.tuned_proposed.rmse_circle:.2f} N. NoIm does as well as Im. Depends on the balloon for "
-        "passive impedance (C2.34).",
+        note="On the circle {.proposed.rmse_circle:.2f} N against {.force.rmse_circle:.2f} and "
+        "{.passive.rmse_circle:.2f} N, all with a force that fades in. The control is an integral of the force error, "
+        "which estimates no movement: {.tuned_force.rmse_circle:.2f} N, as the proposed law with tuned gains, "
+        "{.tuned_proposed.rmse_circle:.2f} N. NoIm does as well as Im. Depends on the balloon for passive impedance "
+        "(C2.34).",
     ),
     fig_2_11(
         "C2.26",
@@ -51,13 +50,11 @@ CLAIMS = (
         control=greater(f"{MOVING}.lead_excess_circle", f"{MOVING}.lead_excess_line"),
         readings={"with the best of as many gains for each law": _on_the_circle("tuned_force", "tuned_passive")},
         searched="printed and tuned gains, the bandwidth of the servo",
-        note="By how much the rivals err more, on the line and on the circle: force control "
-        "{balloon_movement.force_excess_line:.2f} and {balloon_movement.force_excess_circle:.2f} N, passive impedance "
-        "{balloon_movement.passive_excess_line:.2f} and {balloon_movement.passive_excess_circle:.2f} N; it rings from "
-        "the start and slowly calms down. With tuned gains the latter are "
-        "{balloon_movement.tuned_passive_excess_line:.3f} and {balloon_movement.tuned_passive_excess_circle:.3f} N, "
-        "and force control {balloon_movement.tuned_force_excess_line:.3f} and "
-        "{balloon_movement.tuned_force_excess_circle:.3f} N. The control is NoIm.",
+        note="By how much the rivals err more, on the line and on the circle: force control {.force_excess_line:.2f} "
+        "and {.force_excess_circle:.2f} N, passive impedance {.passive_excess_line:.2f} and "
+        "{.passive_excess_circle:.2f} N; it rings from the start and slowly calms down. With tuned gains the latter "
+        "are {.tuned_passive_excess_line:.3f} and {.tuned_passive_excess_circle:.3f} N, and force control "
+        "{.tuned_force_excess_line:.3f} and {.tuned_force_excess_circle:.3f} N. The control is NoIm.",
     ),
     ours_2_11(
         "C2.34",
@@ -74,7 +71,7 @@ CLAIMS = (
         "C2.37",
         "With gains tuned under one search budget the proposed law beats (integral) force control.",
         less(f"{MOVING}.tuned_proposed.rmse_circle", f"{MOVING}.tuned_force.rmse_circle"),
-        note="{balloon_movement.tuned_proposed.rmse_circle:.4f} against {balloon_movement.tuned_force.rmse_circle:.4f} "
+        note="{.tuned_proposed.rmse_circle:.4f} against {.tuned_force.rmse_circle:.4f} "
         "N with one draw of tremor and sensor noise. Where balloon, sensor and servo vary (study), and on the axis on "
         "which the gains were searched (T2.H), the force law is more often ahead: they are on a par.",
     ),

@@ -32,7 +32,7 @@ CLAIMS = (
         "The force along the holding line converges to 10 N.",
         every(*(within(f"{STATIC}.{start}.force_along", 9.8, 10.2) for start in _STARTS)),
         control=within(f"{STATIC}.force.force_along", 9.8, 10.2),
-        note="Within 5 % after {balloon_static.off_80.settling_time:.1f} s, a time that the smoothing sets. The "
-        "control is the printed force controller, which stays at {balloon_static.force.force_along:.2g} N.",
+        note="Within 5 % after {.off_80.settling_time:.1f} s, a time that the smoothing sets. The "
+        "control is the printed force controller, which stays at {.force.force_along:.2g} N.",
     ),
 )

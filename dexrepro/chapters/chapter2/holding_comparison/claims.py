@@ -67,7 +67,7 @@ CLAIMS = (
         control=_worst("rmse", ["tuned_force_integral_1"]),
         readings=_windows(_worst),
         note="True of the printed static law; an integral force law with a tuned gain is the control: "
-        "{holding_comparison.tuned_force_integral_1.rmse:.2f} N, as PIm with {holding_comparison.s4.rmse:.2f} N.",
+        "{.tuned_force_integral_1.rmse:.2f} N, as PIm with {.s4.rmse:.2f} N.",
     ),
     fig_2_8(
         "C2.13",
@@ -76,8 +76,7 @@ CLAIMS = (
         control=ordered_pairs(("tuned_force_integral_1", "s4")),
         readings=_told(_on_traj_1),
         note="The control is an integral force law with a tuned gain in the estimating laws' place. Told what they are "
-        "told of the object (a_0, k, the smoothing) passive impedance still errs by "
-        "{holding_comparison.told_4.rmse:.3f} N.",
+        "told of the object (a_0, k, the smoothing) passive impedance still errs by {.told_4.rmse:.3f} N.",
     ),
     fig_2_8(
         "C2.14",
@@ -87,11 +86,10 @@ CLAIMS = (
         readings=_told(_on_traj_2),
         searched="the start of the window, 0 to 20 s; what the rival is told",
         note="With (2.8) only as long as the start counts, which the estimating laws fade in and know a_0 for: "
-        "{holding_comparison.s10.rmse_0:.3f} against {holding_comparison.s12.rmse_0:.3f} N over the whole run, "
-        "{holding_comparison.s10.rmse:.3f} against {holding_comparison.s12.rmse:.3f} N in the second period. Told a_0, "
-        "k and the smoothing too the rival errs by {holding_comparison.told_10.rmse_0:.3f} N over the whole run and "
-        "is ahead from 5 s ({holding_comparison.told_10.rmse_5:.3f} against {holding_comparison.s12.rmse_5:.3f} N). "
-        "Not so on an arm without lag, where they win again.",
+        "{.s10.rmse_0:.3f} against {.s12.rmse_0:.3f} N over the whole run, {.s10.rmse:.3f} against {.s12.rmse:.3f} N "
+        "in the second period. Told a_0, k and the smoothing too the rival errs by {.told_10.rmse_0:.3f} N over the "
+        "whole run and is ahead from 5 s ({.told_10.rmse_5:.3f} against {.s12.rmse_5:.3f} N). Not so on an arm without "
+        "lag, where they win again.",
     ),
     fig_2_8(
         "C2.15",
@@ -100,7 +98,7 @@ CLAIMS = (
         control=ordered_pairs(("s2", "s1")),
         readings=_windows(_regulation),
         searched="the start of the window, 0 to 20 s",
-        note="s3/s4 by little, {holding_comparison.s3.rmse:.4f} against {holding_comparison.s4.rmse:.4f} N, and "
+        note="s3/s4 by little, {.s3.rmse:.4f} against {.s4.rmse:.4f} N, and "
         "reversed where the start counts. The control is the force controller, a pair the book does not discuss.",
     ),
     Claim(
@@ -127,10 +125,9 @@ CLAIMS = (
         credits="the movement estimation",
         readings={"an object of 0.7 m": _well("s15_long", "s17_long")},
         searched="the length of the object, which is not printed",
-        note="Without (2.8) s15 and s17 err by {holding_comparison.s15.rmse:.2f} and {holding_comparison.s17.rmse:.2f} "
-        "N of 7 N, because an object of 0.55 m cannot give 7 N there; one of 0.7 m can "
-        "({holding_comparison.s15_long.rmse:.2f} and {holding_comparison.s17_long.rmse:.2f} N). That it is because of "
-        "the estimation is not shown by this bound: passive impedance stays within it in all its runs.",
+        note="Without (2.8) s15 and s17 err by {.s15.rmse:.2f} and {.s17.rmse:.2f} N of 7 N, because an object of 0.55 "
+        "m cannot give 7 N there; one of 0.7 m can ({.s15_long.rmse:.2f} and {.s17_long.rmse:.2f} N). That it is "
+        "because of the estimation is not shown by this bound: passive impedance stays within it in all its runs.",
     ),
     fig_2_8(
         "C2.19",
@@ -148,8 +145,7 @@ CLAIMS = (
         searched="the start of the window, 0 to 20 s, and the arm",
         note="With the velocity estimate as printed (E2.03) the lead carries almost nothing: that is the control. "
         "Under joint PD the 10 ms of lead help because they are close to the arm's lag. On Traj. 2 the pairs are ties, "
-        "{holding_comparison.s14.rmse:.4f} and {holding_comparison.s12.rmse:.4f} N with (2.8). An arm that realises "
-        "(2.25) has the lead.",
+        "{.s14.rmse:.4f} and {.s12.rmse:.4f} N with (2.8). An arm that realises (2.25) has the lead.",
     ),
     Claim(
         "C2.30",
@@ -167,8 +163,8 @@ CLAIMS = (
         greater(f"{COMPARISON}.lead_1", f"{COMPARISON}.lead_2"),
         control=greater(f"{COMPARISON}.integral_lead_1", f"{COMPARISON}.integral_lead_2"),
         where="2.4.2.2",
-        note="By how much passive impedance errs more, with (2.8): {holding_comparison.lead_1:.3f} N on Traj. 1, "
-        "{holding_comparison.lead_2:.3f} N on Traj. 2, where it errs less. The control is an integral force law.",
+        note="By how much passive impedance errs more, with (2.8): {.lead_1:.3f} N on Traj. 1, "
+        "{.lead_2:.3f} N on Traj. 2, where it errs less. The control is an integral force law.",
     ),
     *(
         Claim(

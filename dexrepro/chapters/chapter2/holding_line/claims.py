@@ -21,7 +21,7 @@ CLAIMS = (
         greater(f"{LINE}.case1_without_excess", f"{LINE}.case1_with_excess", 3),
         control=greater(f"{LINE}.aligned_without_excess", f"{LINE}.aligned_with_excess", 3),
         credits="the misaligned start",
-        note="By {holding_line.case1_without_excess:.1f} and {holding_line.case1_with_excess:.2f} mm.",
+        note="By {.case1_without_excess:.1f} and {.case1_with_excess:.2f} mm.",
     ),
     fig_2_5(
         "C2.03",

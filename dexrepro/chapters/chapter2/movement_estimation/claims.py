@@ -44,9 +44,9 @@ CLAIMS = (
             ("printed30", "printed10"), ("printed40", "printed10"), metric="convergence_time", experiment=ESTIMATION
         ),
         no_control="The speed is all that differs between the runs; at one speed they are one run.",
-        note="Clear with time counted from the start ({movement_estimation.printed10.convergence_time:.1f}, "
-        "{movement_estimation.printed30.convergence_time:.1f} and "
-        "{movement_estimation.printed40.convergence_time:.1f} s to within 1 mm), weak with a window.",
+        note="Clear with time counted from the start ({.printed10.convergence_time:.1f}, "
+        "{.printed30.convergence_time:.1f} and "
+        "{.printed40.convergence_time:.1f} s to within 1 mm), weak with a window.",
     ),
     fig_2_7(
         "C2.11",
@@ -55,10 +55,8 @@ CLAIMS = (
         control=every(*(less(f"{ESTIMATION}.constant{s}.rmse", 0.05) for s in (10, 30, 40))),
         credits="the estimation of the partner's movement",
         note="The control estimates a constant, at the same rate: an integral of the force error. It errs by "
-        "{movement_estimation.constant10.rmse:.3f}, {movement_estimation.constant30.rmse:.3f} and "
-        "{movement_estimation.constant40.rmse:.3f} N, the estimation of a movement by "
-        "{movement_estimation.sigma10.rmse:.3f}, {movement_estimation.sigma30.rmse:.3f} and "
-        "{movement_estimation.sigma40.rmse:.3f} N.",
+        "{.constant10.rmse:.3f}, {.constant30.rmse:.3f} and {.constant40.rmse:.3f} N, the estimation of a movement by "
+        "{.sigma10.rmse:.3f}, {.sigma30.rmse:.3f} and {.sigma40.rmse:.3f} N.",
     ),
     Claim(
         "C2.29",

@@ -68,8 +68,8 @@ CLAIMS = (
         every(*(less(f"{PUSH}.{way}.rcm_recovery_time", 2.0) for way in WAYS)),
         control=every(*(less(f"{PUSH}.free_{way}.rcm_recovery_time", 2.0) for way in WAYS)),
         credits="the null-space control algorithm",
-        note="After {external_push.plus.rcm_recovery_time:.2f} s; without the null-space torque after "
-        "{external_push.free_plus.rcm_recovery_time:.2f} s: the main task's orientation rule brings the arm back.",
+        note="After {.plus.rcm_recovery_time:.2f} s; without the null-space torque after "
+        "{.free_plus.rcm_recovery_time:.2f} s: the main task's orientation rule brings the arm back.",
     ),
     fig_3_12(
         "C3.10",
@@ -78,8 +78,8 @@ CLAIMS = (
         control=_lower("rcm_peak", "free", "plain"),
         credits="the compensation of the observed torque",
         readings={"exact model": _lower("rcm_peak", "exact", "exactplain")},
-        note="From {external_push.plain_plus.rcm_peak:.4f} to {external_push.plus.rcm_peak:.4f} m and from "
-        "{external_push.plain_minus.rcm_peak:.4f} to {external_push.minus.rcm_peak:.4f} m, in single runs; where what "
+        note="From {.plain_plus.rcm_peak:.4f} to {.plus.rcm_peak:.4f} m and from "
+        "{.plain_minus.rcm_peak:.4f} to {.minus.rcm_peak:.4f} m, in single runs; where what "
         "is not printed varies it is a matter of luck (study). The control drops the null-space torque altogether.",
     ),
     Claim(
@@ -101,9 +101,8 @@ CLAIMS = (
         control=_lower("error_peak", "free", "plain"),
         credits="the null-space control algorithm",
         readings={"exact model": _lower("error_peak", "exact", "exactplain")},
-        note="From {external_push.plain_plus.error_peak:.4f} to {external_push.plus.error_peak:.4f} m and from "
-        "{external_push.plain_minus.error_peak:.4f} to {external_push.minus.error_peak:.4f} m, in single runs. Without "
-        "any null-space torque the peak is {external_push.free_plus.error_peak:.4f} and "
-        "{external_push.free_minus.error_peak:.4f} m.",
+        note="From {.plain_plus.error_peak:.4f} to {.plus.error_peak:.4f} m and from {.plain_minus.error_peak:.4f} to "
+        "{.minus.error_peak:.4f} m, in single runs. Without any null-space torque the peak is "
+        "{.free_plus.error_peak:.4f} and {.free_minus.error_peak:.4f} m.",
     ),
 )

@@ -51,9 +51,8 @@ CLAIMS = (
         every(*_each("rcm_distance_max", 0.01)),
         control=every(*_each("rcm_distance_max", 0.01, "free")),
         credits="the null-space torque",
-        note="Without the torque Dis_R at the end is {fixed_opening.default_ratio:.3g} times as large in the reach "
-        "where it matters least and {fixed_opening.default_ratio_mean:.3g} times on average: the orientation rule "
-        "alone does the work.",
+        note="Without the torque Dis_R at the end is {.default_ratio:.3g} times as large in the reach where it matters "
+        "least and {.default_ratio_mean:.3g} times on average: the orientation rule alone does the work.",
     ),
     ours_3_7_to_10(
         "C3.03b",
@@ -79,8 +78,7 @@ CLAIMS = (
         where="3.3.2",
         note="As near the centre as the arm is here, the torque is so small that it disturbs nothing without the "
         "projector either; where the tool axis is left free, it does (tracking error up to "
-        "{fixed_opening.unprojectedpos1.tracking_error_max:.2g} m against "
-        "{fixed_opening.exactpos1.tracking_error_max:.2g} m).",
+        "{.unprojectedpos1.tracking_error_max:.2g} m against {.exactpos1.tracking_error_max:.2g} m).",
     ),
     fig_3_7_to_10(
         "C3.04b",
@@ -99,11 +97,10 @@ CLAIMS = (
         where="3.3.2",
         note="Both tasks have no error in roll, which (3.21) takes from the arm itself: they differ in the Jacobian "
         "alone. Where the tool axis is left free, which is not the book's task, the torque is large and the largest "
-        "error grows from {fixed_opening.exactposfree1.tracking_error_max:.1g} to "
-        "{fixed_opening.exactpos1.tracking_error_max:.1g} m (reach 1, exact model). The null-space torque is "
-        "dynamically consistent, (3.27) is not: e_2 holds the speed of all joints, so the law brakes the null-space "
-        "motion with a torque that the task feels (C3.04c). No torque is clipped here, and without the network the "
-        "coupling is larger.",
+        "error grows from {.exactposfree1.tracking_error_max:.1g} to {.exactpos1.tracking_error_max:.1g} m (reach 1, "
+        "exact model). The null-space torque is dynamically consistent, (3.27) is not: e_2 holds the speed of all "
+        "joints, so the law brakes the null-space motion with a torque that the task feels (C3.04c). No torque is "
+        "clipped here, and without the network the coupling is larger.",
     ),
     ours_3_7_to_10(
         "C3.04c",
@@ -129,12 +126,12 @@ CLAIMS = (
         readings={"the tool's axis alone is held, as in the other claims": _hardest(4, "reach")},
         searched="task (tool axis held, six dimensions)",
         note="The book measures no difficulty. In the printed task of six dimensions the largest distances are "
-        "{fixed_opening.pose1.rcm_distance_max:.2g}, {fixed_opening.pose2.rcm_distance_max:.2g}, "
-        "{fixed_opening.pose3.rcm_distance_max:.2g} and {fixed_opening.pose4.rcm_distance_max:.2g} m: the fourth reach "
+        "{.pose1.rcm_distance_max:.2g}, {.pose2.rcm_distance_max:.2g}, "
+        "{.pose3.rcm_distance_max:.2g} and {.pose4.rcm_distance_max:.2g} m: the fourth reach "
         "comes to a joint limit. Since (3.21) takes the roll from the arm, its error is zero in both tasks, which "
         "differ in the Jacobian alone: six rows ask the roll not to turn, five leave it free. With five the limit is "
-        "not met and the second reach is the largest ({fixed_opening.reach2.rcm_distance_max:.2g} m, the fourth "
-        "{fixed_opening.reach4.rcm_distance_max:.2g} m). The control is a straight reach that ignores the opening.",
+        "not met and the second reach is the largest ({.reach2.rcm_distance_max:.2g} m, the fourth "
+        "{.reach4.rcm_distance_max:.2g} m). The control is a straight reach that ignores the opening.",
     ),
     Claim(
         "C3.06",
@@ -155,7 +152,7 @@ CLAIMS = (
         where="3.1",
         note="The chapter compares with nothing. The rival here is the plainest of its kind, joint angles interpolated "
         "between postures at the start, in the opening and at the target: it leaves the centre by "
-        "{fixed_opening.postures1.rcm_distance_max:.3f} m in reach 1 and touches the box in all four. The control "
+        "{.postures1.rcm_distance_max:.3f} m in reach 1 and touches the box in all four. The control "
         "knows of no opening. Peg-in-hole methods, which the book names too, are about the fit of a part, not the arm.",
     ),
     Claim(
@@ -177,10 +174,9 @@ CLAIMS = (
         credits="the network that learns the dynamics",
         where="3.1, 3.2.2",
         note="The control is an integrator, one constant node at the same gain: it leaves "
-        "{fixed_opening.constant1.final_position_error:.1e} m where the network leaves "
-        "{fixed_opening.reach1.final_position_error:.1e} m and none {fixed_opening.unlearnt1.final_position_error:.1e} "
-        "m, and with gravity unknown {fixed_opening.weightless_constant1.final_position_error:.1e} against "
-        "{fixed_opening.weightless1.final_position_error:.1e} m.",
+        "{.constant1.final_position_error:.1e} m where the network leaves {.reach1.final_position_error:.1e} m and "
+        "none {.unlearnt1.final_position_error:.1e} m, and with gravity unknown "
+        "{.weightless_constant1.final_position_error:.1e} against {.weightless1.final_position_error:.1e} m.",
     ),
     ours_3_7(
         "C3.16b",

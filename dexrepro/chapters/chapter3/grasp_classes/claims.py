@@ -24,7 +24,7 @@ CLAIMS = (
         control=less(f"{CLASSES}.narrow.unsafe_called_safe", 0.1),
         where="3.4.2.2",
         note="The control is a patch that does not reach beyond the safety margin. It needs enough scenes, too: "
-        "{grasp_classes.scenes} were taken after fewer had let more than a tenth pass, and where what is not "
+        "{.scenes} were taken after fewer had let more than a tenth pass, and where what is not "
         "printed varies it holds in about half of the draws (study).",
     ),
     Claim(

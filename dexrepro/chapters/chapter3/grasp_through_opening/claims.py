@@ -15,11 +15,10 @@ CLAIMS = (
         every(greater(f"{PICKS}.chosen.success", 0.5), greater(f"{PICKS}.success_gain", 0.0)),
         control=greater(f"{PICKS}.random.success", 0.5),
         where="3.5, 3.6",
-        note="{grasp_through_opening.chosen.lifted} of {grasp_through_opening.chosen.trials} scenes, with random "
-        "grasps (control) {grasp_through_opening.random.lifted}; the 95 % interval of the former begins at "
-        "{grasp_through_opening.chosen.success_low:.0%}. What an object's rise between two closing fingers shows, by "
-        "contact and friction, counts as held; it is then carried out as if fixed to the hand. The number of proposals "
-        "was raised because a fifth as many left scenes without a good one. The book shows single grasps and no rate "
-        "of success.",
+        note="{.chosen.lifted} of {.chosen.trials} scenes, with random grasps (control) {.random.lifted}; the 95 % "
+        "interval of the former begins at {.chosen.success_low:.0%}. What an object's rise between two closing fingers "
+        "shows, by contact and friction, counts as held; it is then carried out as if fixed to the hand. The number of "
+        "proposals was raised because a fifth as many left scenes without a good one. The book shows single grasps and "
+        "no rate of success.",
     ),
 )

@@ -30,9 +30,8 @@ CLAIMS = (
         readings={"told by a camera, a picture late": less(f"{MOVING}.late.moving_distance_max", 0.01)},
         where="3.6",
         note="In real time: from where the opening is now, without its path. The control is told once where it is "
-        "({moving_opening.once.moving_distance_max:.3f} m); a picture late the arm is up to "
-        "{moving_opening.late.moving_distance_max:.4f} m off. Whether a control step is computed within its period "
-        "depends on the machine (`make bench`).",
+        "({.once.moving_distance_max:.3f} m); a picture late the arm is up to {.late.moving_distance_max:.4f} m off. "
+        "Whether a control step is computed within its period depends on the machine (`make bench`).",
     ),
     fig_3_16(
         "C3.13",
@@ -40,7 +39,7 @@ CLAIMS = (
         less(f"{MOVING}.track.moving_distance_max", 0.01),
         control=less(f"{MOVING}.free.moving_distance_max", 0.01),
         credits="the null-space torque",
-        note="Without it the mean Dis_R is {moving_opening.default_ratio:.2f} times as large: as with the fixed "
+        note="Without it the mean Dis_R is {.default_ratio:.2f} times as large: as with the fixed "
         "opening, the orientation rule alone does it.",
     ),
     ours_3_16(

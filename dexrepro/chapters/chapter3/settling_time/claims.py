@@ -34,19 +34,17 @@ CLAIMS = (
         printed=_fixed("printed", "bound_printed"),
         credits="the terms in SIG",
         note="The control, the exponential law of the linear terms, stays below the bound as well, which is "
-        "{settling_time.printed.bound:.1f} s (printed constants: {settling_time.printed.bound_printed:.1f} s) where "
-        "the longest settling takes {settling_time.printed.settling_max:.2f} s; its time goes on growing. Torque "
-        "unlimited, see C3.14b.",
+        "{.printed.bound:.1f} s (printed constants: {.printed.bound_printed:.1f} s) where the longest settling takes "
+        "{.printed.settling_max:.2f} s; its time goes on growing. Torque unlimited, see C3.14b.",
     ),
     ours_3_a(
         "C3.14b",
         "It does not grow either, by more than a tenth from 1 rad to 10 rad, with the feedback limited to the arm's "
         "torques.",
         less(f"{SETTLING}.limited.settling_10", f"{SETTLING}.limited.settling_1", 1.1),
-        note="From 1 rad the printed gains ask for {settling_time.printed.torque_1:.0f} N m; within the limits the "
-        "arm settles in {settling_time.limited.settling_1:.3g} s from 1 rad and in "
-        "{settling_time.limited.settling_10:.3g} s from 10 rad (?: not within the run). What the law adds for the "
-        "rate of the virtual velocity is taken to be delivered.",
+        note="From 1 rad the printed gains ask for {.printed.torque_1:.0f} N m; within the limits the arm settles in "
+        "{.limited.settling_1:.3g} s from 1 rad and in {.limited.settling_10:.3g} s from 10 rad (?: not within the "
+        "run). What the law adds for the rate of the virtual velocity is taken to be delivered.",
     ),
     fig_3_a(
         "C3.15",

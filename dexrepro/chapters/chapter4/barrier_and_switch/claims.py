@@ -17,7 +17,7 @@ CLAIMS = (
         control=every(*(less(f"{B}.{case}.max_usage", 1.0) for case in ("no_barrier", "gains_only"))),
         credits="the barrier Lyapunov function",
         where="4.3",
-        note="Without it the error reaches {barrier_and_switch.no_barrier.max_usage:.1f} times the bound.",
+        note="Without it the error reaches {.no_barrier.max_usage:.1f} times the bound.",
     ),
     fig_4_3(
         "C4.16",
@@ -46,7 +46,7 @@ CLAIMS = (
         readings={"one adaptation gain for all": less(f"{B}.base.rmse_mm", f"{B}.gaussians.rmse_mm")},
         where="Remark 4.1(3)",
         note="With one adaptation gain it is an effect of the gain, as |G|^2 is larger with them (effective gain "
-        "{barrier_and_switch.base.effective_gain:.0f} against {barrier_and_switch.gaussians.effective_gain:.0f}). The "
+        "{.base.effective_gain:.0f} against {.gaussians.effective_gain:.0f}). The "
         "control: Gaussians alone, with the gain raised, improve as well.",
     ),
     fig_4_3(
@@ -61,10 +61,10 @@ CLAIMS = (
         ),
         credits="the robust term",
         where="4.3.2",
-        note="Without it the error takes {barrier_and_switch.no_robust.max_usage:.1%} of the bound. The robust term "
-        "alone tracks best of all ({barrier_and_switch.robust_only.rmse_mm:.1f} mm) but chatters: the torque changes "
-        "by {barrier_and_switch.robust_only.torque_increment_nm:.0f} N m in 10 ms, with the network by "
-        "{barrier_and_switch.base.torque_increment_nm:.0f} N m. The control is the law without both.",
+        note="Without it the error takes {.no_robust.max_usage:.1%} of the bound. The robust term "
+        "alone tracks best of all ({.robust_only.rmse_mm:.1f} mm) but chatters: the torque changes "
+        "by {.robust_only.torque_increment_nm:.0f} N m in 10 ms, with the network by "
+        "{.base.torque_increment_nm:.0f} N m. The control is the law without both.",
     ),
     Claim(
         "C4.28",
@@ -78,10 +78,9 @@ CLAIMS = (
         searched="gain rule; errors over the whole run, 1 to 5 s and the last half, torque increments, nodes",
         where="contribution 2, Remark 4.1(1)",
         note="The book calls the placement at the input 'not a reasonable choice'. At equal effective gain it errs by "
-        "{barrier_and_switch.at_input.rmse_mm:.2f} mm with {barrier_and_switch.at_input.nodes} nodes and "
-        "{barrier_and_switch.at_input.torque_increment_nm:.1f} N m of torque increment, the book's by "
-        "{barrier_and_switch.base.rmse_mm:.2f} mm with {barrier_and_switch.base.nodes} nodes and "
-        "{barrier_and_switch.base.torque_increment_nm:.1f} N m.",
+        "{.at_input.rmse_mm:.2f} mm with {.at_input.nodes} nodes and {.at_input.torque_increment_nm:.1f} N m of torque "
+        "increment, the book's by {.base.rmse_mm:.2f} mm with {.base.nodes} nodes and {.base.torque_increment_nm:.1f} "
+        "N m.",
     ),
     fig_4_3(
         "C4.29",
@@ -94,7 +93,7 @@ CLAIMS = (
         },
         searched="radii (printed, from the farthest node), start (at rest at the centre, on the curve), window",
         note="E is 0 where a component of the input is beyond d_b. At the start, where the virtual acceleration is "
-        "large, it is: the norm of the input reaches {barrier_and_switch.base.largest_input:.0f}. Settled, "
-        "it stays inside (smallest E {barrier_and_switch.base.settled_share:.2g}).",
+        "large, it is: the norm of the input reaches {.base.largest_input:.0f}. Settled, "
+        "it stays inside (smallest E {.base.settled_share:.2g}).",
     ),
 )

@@ -49,9 +49,8 @@ CLAIMS = (
         less(f"{P}.reuse.max_usage", 1.0),
         control=less(f"{P}.no_barrier.max_usage", 1.0),
         credits="the proposed controller, that is, its barrier",
-        note="The bound is so wide that the error takes "
-        "{payload_transfer.reuse.max_usage:.0%} of it, {payload_transfer.no_barrier.max_usage:.0%} without the barrier "
-        "and {payload_transfer.none.max_usage:.0%} without a network.",
+        note="The bound is so wide that the error takes {.reuse.max_usage:.0%} of it, {.no_barrier.max_usage:.0%} "
+        "without the barrier and {.none.max_usage:.0%} without a network.",
     ),
     fig_4_12(
         "C4.21",
@@ -61,11 +60,10 @@ CLAIMS = (
         readings={"width 1.5": _oscillates("rbf_medium", "reuse")},
         searched="width of the fixed network (0.3, 1.5, 3, 5), whose error decreases with it",
         note="Visibly: by half as much again, and more than without any network; oscillation is the rms rate of the "
-        "error. Broad {payload_transfer.reuse.oscillation_mm_s:.0f} mm/s, fixed with the width of least error "
-        "{payload_transfer.rbf_wide.oscillation_mm_s:.0f}, with 1.5 "
-        "{payload_transfer.rbf_medium.oscillation_mm_s:.0f}, without a network "
-        "{payload_transfer.none.oscillation_mm_s:.0f}; an integrator "
-        "{payload_transfer.constant.oscillation_mm_s:.0f}. The width is not printed; 0.3 gives no response.",
+        "error. Broad {.reuse.oscillation_mm_s:.0f} mm/s, fixed with the width of least error "
+        "{.rbf_wide.oscillation_mm_s:.0f}, with 1.5 {.rbf_medium.oscillation_mm_s:.0f}, without a network "
+        "{.none.oscillation_mm_s:.0f}; an integrator {.constant.oscillation_mm_s:.0f}. The width is not printed; 0.3 "
+        "gives no response.",
     ),
     Claim(
         "C4.21b",
@@ -74,8 +72,7 @@ CLAIMS = (
         less(f"{P}.reuse.rmse_mm", f"{P}.rbf_wide.rmse_mm"),
         control=less(f"{P}.constant.rmse_mm", f"{P}.rbf_wide.rmse_mm"),
         source="ours",
-        note="{payload_transfer.reuse.rmse_mm:.2f} against {payload_transfer.rbf_wide.rmse_mm:.2f} mm; one constant "
-        "node {payload_transfer.constant.rmse_mm:.2f} mm.",
+        note="{.reuse.rmse_mm:.2f} against {.rbf_wide.rmse_mm:.2f} mm; one constant node {.constant.rmse_mm:.2f} mm.",
     ),
     fig_4_12(
         "C4.22",
@@ -84,12 +81,11 @@ CLAIMS = (
         no_control="nothing that could be taken away is credited: it says where the printed points lie",
         readings={"width 1.5": _less_effect("rbf_medium"), "width 0.3": _less_effect("rbf_narrow")},
         searched="three widths; a response that is no more than none counts as none",
-        note="Largest feature in phases I and II: {payload_transfer.rbf_medium.activation_phase1:.3f} and "
-        "{payload_transfer.rbf_medium.activation_phase2:.3f} with width 1.5, "
-        "{payload_transfer.rbf_wide.activation_phase1:.2f} and {payload_transfer.rbf_wide.activation_phase2:.2f} with "
-        "5; with 0.3 both phases are outside ({payload_transfer.rbf_narrow.activation_phase1:.0e}). The printed box "
-        "reaches {payload_transfer.rbf_medium.points_in_box} of the points A to F; a frame or the reversed fourth "
-        "interval may be read wrongly.",
+        note="Largest feature in phases I and II: {.rbf_medium.activation_phase1:.3f} and "
+        "{.rbf_medium.activation_phase2:.3f} with width 1.5, {.rbf_wide.activation_phase1:.2f} and "
+        "{.rbf_wide.activation_phase2:.2f} with 5; with 0.3 both phases are outside "
+        "({.rbf_narrow.activation_phase1:.0e}). The printed box reaches {.rbf_medium.points_in_box} of the points A to "
+        "F; a frame or the reversed fourth interval may be read wrongly.",
     ),
     fig_4_12(
         "C4.23",
@@ -97,10 +93,10 @@ CLAIMS = (
         _few_nodes("reuse"),
         control=_few_nodes("constant"),
         credits="the incremental network",
-        note="{payload_transfer.reuse.nodes_phase1} after phase I and {payload_transfer.reuse.nodes_phase2} after II, "
+        note="{.reuse.nodes_phase1} after phase I and {.reuse.nodes_phase2} after II, "
         "the first and the sum of both; the book may mean the nodes added in each (E4.23). The control is one constant "
-        "node: {payload_transfer.constant.rmse_mm:.1f} mm against {payload_transfer.reuse.rmse_mm:.1f} mm and "
-        "{payload_transfer.rbf_wide.rmse_mm:.1f} mm of the fixed network, so that tens are not needed either.",
+        "node: {.constant.rmse_mm:.1f} mm against {.reuse.rmse_mm:.1f} mm and "
+        "{.rbf_wide.rmse_mm:.1f} mm of the fixed network, so that tens are not needed either.",
     ),
     fig_4_12(
         "C4.25",
@@ -109,11 +105,10 @@ CLAIMS = (
         control=_transfers("constant", "constant_frozen", "constant_zero"),
         credits="the knowledge in the broad network",
         note="The control is an integrator: what transfers is mainly the payload's weight. One constant node leaves "
-        "{payload_transfer.constant.rmse_mm:.1f} mm trained, {payload_transfer.constant_zero.rmse_mm:.1f} mm untrained "
-        "and {payload_transfer.constant_frozen.rmse_mm:.1f} mm with what it learned alone, the broad network "
-        "{payload_transfer.reuse.rmse_mm:.1f}, {payload_transfer.zero.rmse_mm:.1f} and "
-        "{payload_transfer.frozen.rmse_mm:.1f} mm; with the nodes of the training and no weights, which have a higher "
-        "effective gain than nodes still to come, {payload_transfer.nodes.rmse_mm:.1f} mm.",
+        "{.constant.rmse_mm:.1f} mm trained, {.constant_zero.rmse_mm:.1f} mm untrained and "
+        "{.constant_frozen.rmse_mm:.1f} mm with what it learned alone, the broad network {.reuse.rmse_mm:.1f}, "
+        "{.zero.rmse_mm:.1f} and {.frozen.rmse_mm:.1f} mm; with the nodes of the training and no weights, which have a "
+        "higher effective gain than nodes still to come, {.nodes.rmse_mm:.1f} mm.",
     ),
     fig_4_12(
         "C4.26",

@@ -44,11 +44,10 @@ CLAIMS = (
         readings={ONE_GAIN: _below("rmse_mm", "broad20", "common_rbf2", "common_rbf10")},
         searched="width of the fixed network at that gain (3, 4, 6, 10): the widest errs least, and chatters",
         note="Over the whole run, 'overall' in the book. With one gain for all methods the fixed network of width 10 "
-        "has {skill_reuse.common_rbf10.effective_gain:.0f} instead of {skill_reuse.broad20.effective_gain:.0f} of "
-        "effective gain and ties ({skill_reuse.common_rbf10.rmse_mm:.2f} against {skill_reuse.broad20.rmse_mm:.2f} "
-        "mm). The control is an integrator, one constant node at equal effective gain: "
-        "{skill_reuse.constant.rmse_mm:.2f} mm. Effective gain of the width of 2: "
-        "{skill_reuse.rbf2.effective_gain:.0f}, as its oscillation leaves its nodes.",
+        "has {.common_rbf10.effective_gain:.0f} instead of {.broad20.effective_gain:.0f} of effective gain and ties "
+        "({.common_rbf10.rmse_mm:.2f} against {.broad20.rmse_mm:.2f} mm). The control is an integrator, one constant "
+        "node at equal effective gain: {.constant.rmse_mm:.2f} mm. Effective gain of the width of 2: "
+        "{.rbf2.effective_gain:.0f}, as its oscillation leaves its nodes.",
     ),
     Claim(
         "C4.01b",
@@ -69,7 +68,7 @@ CLAIMS = (
         searched="gain rule (equal effective gain, one gain), width of the membership functions (0.7, 1, 2)",
         note="'The same parameters' is read as equal effective gain, by which C4.01 is judged too, or as the same "
         "adaptation gain, whose effect on features that sum to one is an effective gain of "
-        "{skill_reuse.common_fuzzy.effective_gain:.2g} against {skill_reuse.broad20.effective_gain:.0f}. The fuzzy "
+        "{.common_fuzzy.effective_gain:.2g} against {.broad20.effective_gain:.0f}. The fuzzy "
         "network is not specified in the book; ours has two membership functions an input and normalised firing.",
     ),
     fig_4_6(
@@ -80,9 +79,9 @@ CLAIMS = (
         credits="the broad network",
         readings={ONE_GAIN: _below("torque_increment_nm", "broad20", "common_rbf2", "common_rbf10")},
         searched="gain rule; of the widths 3, 4, 6 and 10 of the fixed network the widest has the smallest increments",
-        note="Increment of the torque in 10 ms: {skill_reuse.broad20.torque_increment_nm:.2f} N m against "
-        "{skill_reuse.rbf10.torque_increment_nm:.2f} N m of width 10 at equal effective gain and "
-        "{skill_reuse.common_rbf10.torque_increment_nm:.2f} N m with one gain for all.",
+        note="Increment of the torque in 10 ms: {.broad20.torque_increment_nm:.2f} N m against "
+        "{.rbf10.torque_increment_nm:.2f} N m of width 10 at equal effective gain and "
+        "{.common_rbf10.torque_increment_nm:.2f} N m with one gain for all.",
     ),
     fig_4_6(
         "C4.03b",
@@ -118,10 +117,9 @@ CLAIMS = (
             "once settled": ordered(*(f"{S}.{case}.steady_rmse_mm" for case in BROAD)),
             "once settled, one gain": ordered(*(f"{S}.{case}.steady_rmse_mm" for case in COMMON)),
         },
-        note="Over the whole run the errors differ little, being set by the start "
-        "({skill_reuse.broad20.rmse_mm:.2f}, {skill_reuse.broad30.rmse_mm:.2f}, {skill_reuse.broad50.rmse_mm:.2f} mm "
-        "for 20, 30, 50); settled, at equal effective gain, 20 and 30 tie ({skill_reuse.broad20.steady_rmse_mm:.2f} "
-        "and {skill_reuse.broad30.steady_rmse_mm:.2f} mm).",
+        note="Over the whole run the errors differ little, being set by the start ({.broad20.rmse_mm:.2f}, "
+        "{.broad30.rmse_mm:.2f}, {.broad50.rmse_mm:.2f} mm for 20, 30, 50); settled, at equal effective gain, 20 and "
+        "30 tie ({.broad20.steady_rmse_mm:.2f} and {.broad30.steady_rmse_mm:.2f} mm).",
     ),
     fig_4_6(
         "C4.07a",
@@ -130,8 +128,8 @@ CLAIMS = (
         no_control=PARAMETER,
         readings={ONE_GAIN: _early(("common50", "common30", "broad20"))},
         note="With one gain more nodes mean a larger |G| and so a higher effective gain; scaling the gain removes the "
-        "mechanism. Even then the ripple grows little between 30 and 20 ({skill_reuse.common30.error_ripple_mm:.3f} "
-        "and {skill_reuse.broad20.error_ripple_mm:.3f} mm).",
+        "mechanism. Even then the ripple grows little between 30 and 20 ({.common30.error_ripple_mm:.3f} "
+        "and {.broad20.error_ripple_mm:.3f} mm).",
     ),
     fig_4_7(
         "C4.08",
@@ -162,8 +160,8 @@ CLAIMS = (
         "These nodes cover the new orbit.",
         greater(f"{S}.broad20.last_node_s", 1.0),
         source="ours",
-        note="The last is added after {skill_reuse.broad20.last_node_s:.2f} s, driven by the virtual acceleration at "
-        "the start; on the settled orbit the input stays within {skill_reuse.broad20.settled_input:.2g} of the origin, "
+        note="The last is added after {.broad20.last_node_s:.2f} s, driven by the virtual acceleration at "
+        "the start; on the settled orbit the input stays within {.broad20.settled_input:.2g} of the origin, "
         "a fraction of every threshold.",
     ),
     fig_4_8(
@@ -200,7 +198,7 @@ CLAIMS = (
         "C4.12b",
         "They become constant.",
         every(*(less(f"{S}.{case}.weight_ripple", 0.05) for case in BROAD)),
-        note="They keep rippling by {skill_reuse.broad20.weight_ripple:.0%} at the orbit's frequency, that is, they "
+        note="They keep rippling by {.broad20.weight_ripple:.0%} at the orbit's frequency, that is, they "
         "partly act as an integrator.",
     ),
     fig_4_5(
@@ -216,9 +214,9 @@ CLAIMS = (
             )
         ),
         credits="the knowledge in the broad network",
-        note="The gain lies in the transient; the steady errors are {skill_reuse.broad20.steady_rmse_mm:.2f} and "
-        "{skill_reuse.zero20.steady_rmse_mm:.2f} mm. The control is what one constant node carries over: a tie, "
-        "{skill_reuse.constant.rmse_mm:.1f} against {skill_reuse.constant_zero.rmse_mm:.1f} mm over the run.",
+        note="The gain lies in the transient; the steady errors are {.broad20.steady_rmse_mm:.2f} and "
+        "{.zero20.steady_rmse_mm:.2f} mm. The control is what one constant node carries over: a tie, "
+        "{.constant.rmse_mm:.1f} against {.constant_zero.rmse_mm:.1f} mm over the run.",
     ),
     fig_4_5(
         "C4.14",
@@ -227,9 +225,9 @@ CLAIMS = (
         control=less(f"{S}.constant.frozen_steady_rmse_mm", f"{S}.none.steady_rmse_mm"),
         credits="the approximation by the network's features",
         where="4.3.3",
-        note="They leave {skill_reuse.broad20.frozen_steady_rmse_mm:.2f} of {skill_reuse.none.steady_rmse_mm:.2f} mm; "
+        note="They leave {.broad20.frozen_steady_rmse_mm:.2f} of {.none.steady_rmse_mm:.2f} mm; "
         "one constant torque a joint, learned and kept in the same way, leaves "
-        "{skill_reuse.constant.frozen_steady_rmse_mm:.2f} mm: what they hold is a bias.",
+        "{.constant.frozen_steady_rmse_mm:.2f} mm: what they hold is a bias.",
     ),
     Claim(
         "C4.14b",
@@ -247,11 +245,10 @@ CLAIMS = (
         credits="the knowledge in the broad network",
         readings={"the other order": _easier("reversed", ((2, "alone90"), (3, "alone45"), (4, "broad20")))},
         where="4.3.3",
-        note="An integrator gains less ({skill_reuse.constant.stroke2_rmse_mm:.1f} mm after one stroke, "
-        "{skill_reuse.constant45.stroke1_rmse_mm:.1f} mm alone). That each errs less than the one before, too, "
-        "depends on their order: reversed, they leave {skill_reuse.reversed.stroke1_rmse_mm:.1f}, "
-        "{skill_reuse.reversed.stroke2_rmse_mm:.1f}, {skill_reuse.reversed.stroke3_rmse_mm:.1f} and "
-        "{skill_reuse.reversed.stroke4_rmse_mm:.1f} mm.",
+        note="An integrator gains less ({.constant.stroke2_rmse_mm:.1f} mm after one stroke, "
+        "{.constant45.stroke1_rmse_mm:.1f} mm alone). That each errs less than the one before, too, depends on their "
+        "order: reversed, they leave {.reversed.stroke1_rmse_mm:.1f}, {.reversed.stroke2_rmse_mm:.1f}, "
+        "{.reversed.stroke3_rmse_mm:.1f} and {.reversed.stroke4_rmse_mm:.1f} mm.",
     ),
     fig_4_8(
         "C4.18a",
@@ -260,9 +257,9 @@ CLAIMS = (
         control=less(f"{S}.constant_detour.stroke3_rmse_mm", f"{S}.constant_repeat.stroke2_rmse_mm", 1.1),
         credits="the locality of the Gaussians",
         where="Remark 4.1(4)",
-        note="A stroke repeated after another was learned errs by {skill_reuse.detour.stroke3_rmse_mm:.2f} mm, "
-        "repeated at once by {skill_reuse.repeat.stroke2_rmse_mm:.2f} mm; with one constant node, which is not local, "
-        "by {skill_reuse.constant_detour.stroke3_rmse_mm:.2f} and {skill_reuse.constant_repeat.stroke2_rmse_mm:.2f} "
+        note="A stroke repeated after another was learned errs by {.detour.stroke3_rmse_mm:.2f} mm, "
+        "repeated at once by {.repeat.stroke2_rmse_mm:.2f} mm; with one constant node, which is not local, "
+        "by {.constant_detour.stroke3_rmse_mm:.2f} and {.constant_repeat.stroke2_rmse_mm:.2f} "
         "mm. All orbits of the task lie within one width of the same nodes.",
     ),
     ours_4_8(

@@ -28,9 +28,9 @@ CLAIMS = (
         credits="the adaptive neural law and its barrier",
         where="5.5.2, 5.5.4",
         note="The control is PD control with gravity compensation, tuned with as many settings. Both use "
-        "{bounded_tracking.pd_tuned.bound_use:.0%} of the limits, which is the initial error that we chose; without "
-        "network and barrier the same law uses {bounded_tracking.no_network_no_barrier.bound_use:.0%}, and with one "
-        "constant node in place of the network, an integrator, {bounded_tracking.integrator.bound_use:.0%} (T5.G).",
+        "{.pd_tuned.bound_use:.0%} of the limits, which is the initial error that we chose; without "
+        "network and barrier the same law uses {.no_network_no_barrier.bound_use:.0%}, and with one "
+        "constant node in place of the network, an integrator, {.integrator.bound_use:.0%} (T5.G).",
     ),
     Claim(
         "C5.19",
@@ -46,11 +46,10 @@ CLAIMS = (
         "known exactly or not",
         where="5.4.2",
         note="The sign of the network's term and u of (5.44), which is not defined: with the sign corrected the errors "
-        "use {bounded_tracking.sign_only.bound_use:.0%} of the limits for u = 0, "
-        "{bounded_tracking.sign_robust.bound_use:.0%} for u = 1; with the printed sign and u = 0 "
-        "{bounded_tracking.printed_no_robust.bound_use:.0%} (T5.G), and "
-        "{bounded_tracking.printed_forgetting.bound_use:.0%} where the weights are forgotten at once and M, "
-        "C and G are known exactly, as (5.32) writes them, friction and contact, too.",
+        "use {.sign_only.bound_use:.0%} of the limits for u = 0, {.sign_robust.bound_use:.0%} for u = 1; with the "
+        "printed sign and u = 0 {.printed_no_robust.bound_use:.0%} (T5.G), and {.printed_forgetting.bound_use:.0%} "
+        "where the weights are forgotten at once and M, C and G are known exactly, as (5.32) writes them, friction and "
+        "contact, too.",
     ),
     Claim(
         "C5.27",
@@ -62,9 +61,8 @@ CLAIMS = (
         where="(5.50)",
         note="rho V_1 + V_2 with the plant's own mass matrix; the term of the weights needs the unknown best weights. "
         "Under the printed law the errors leave its domain. Without the network it stays at "
-        "{bounded_tracking.no_network.lyapunov_late:.2f} of its start, with an integrator in its place at "
-        "{bounded_tracking.integrator.lyapunov_late:.1e}, with the network at "
-        "{bounded_tracking.letter_w.lyapunov_late:.1e}.",
+        "{.no_network.lyapunov_late:.2f} of its start, with an integrator in its place at "
+        "{.integrator.lyapunov_late:.1e}, with the network at {.letter_w.lyapunov_late:.1e}.",
     ),
     ours_5_d(
         "C5.33",
@@ -82,11 +80,9 @@ CLAIMS = (
             less(f"{TRACKING}.tuned_encoders.tip_rms", f"{TRACKING}.pd_stiffest_encoders.tip_rms"),
         ),
         note="As many settings each, chosen on the letter a. The best PD gain is the largest of them: with ten times "
-        "as much PD control errs by {bounded_tracking.pd_stiffest.tip_rms:.3f} mm against "
-        "{bounded_tracking.pd_tuned.tip_rms:.3f}, and the law with its untuned gains by "
-        "{bounded_tracking.letter_w.tip_rms:.3f}; with encoders at a torque ripple of "
-        "{bounded_tracking.pd_stiffest_encoders.torque_step:.2g} against "
-        "{bounded_tracking.tuned_encoders.torque_step:.2g} N m (T5.G, T5.H).",
+        "as much PD control errs by {.pd_stiffest.tip_rms:.3f} mm against {.pd_tuned.tip_rms:.3f}, and the law with "
+        "its untuned gains by {.letter_w.tip_rms:.3f}; with encoders at a torque ripple of "
+        "{.pd_stiffest_encoders.torque_step:.2g} against {.tuned_encoders.torque_step:.2g} N m (T5.G, T5.H).",
     ),
     ours_5_d(
         "C5.35",
@@ -95,6 +91,6 @@ CLAIMS = (
         control=greater(f"{TRACKING}.no_network.tip_rms", f"{TRACKING}.integrator.tip_rms", factor=10.0),
         credits="the network",
         note="With one constant node in its place, an integrator at the same effective gain, the error is "
-        "{bounded_tracking.integrator.tip_rms:.3f} mm against {bounded_tracking.letter_w.tip_rms:.3f} mm.",
+        "{.integrator.tip_rms:.3f} mm against {.letter_w.tip_rms:.3f} mm.",
     ),
 )

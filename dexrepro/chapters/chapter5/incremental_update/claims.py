@@ -19,10 +19,9 @@ CLAIMS = (
         control=less(f"{UPDATE}.search.operations_idmp", f"{UPDATE}.search.operations_trial"),
         where="5.1",
         note="The book prints no cost and no such method. Here a cross-entropy search over the weights of a plain DMP, "
-        "helped by the size of the best weights: after {incremental_update.search.rollouts:.0f} rollouts its error is "
-        "{incremental_update.search.error:.2g} cm^2, the IDMP's {incremental_update.search.error_idmp:.2g} cm^2 by "
-        "{incremental_update.search.operations_idmp:.1e} multiplications and no rollout. One rollout alone, the "
-        "control, takes {incremental_update.search.operations_trial:.1e}.",
+        "helped by the size of the best weights: after {.search.rollouts:.0f} rollouts its error is "
+        "{.search.error:.2g} cm^2, the IDMP's {.search.error_idmp:.2g} cm^2 by {.search.operations_idmp:.1e} "
+        "multiplications and no rollout. One rollout alone, the control, takes {.search.operations_trial:.1e}.",
     ),
     ours_5_g(
         "C5.36",

@@ -23,11 +23,10 @@ CLAIMS = (
         credits="the network's nodes, which grow in number",
         where="5.4.2, 5.5.4",
         note="The control is an integrator, one constant node at the same effective gain, that goes on from letter to "
-        "letter: w begins with {knowledge_reuse.integrator_kept.w.early:.2f} mrad against "
-        "{knowledge_reuse.integrator_anew.w.early:.2f} from zero, l with {knowledge_reuse.integrator_kept.l.early:.2f} "
-        "against {knowledge_reuse.integrator_anew.l.early:.2f}; the network with {knowledge_reuse.kept.w.early:.2f} "
-        "against {knowledge_reuse.anew.w.early:.2f} and {knowledge_reuse.kept.l.early:.2f} against "
-        "{knowledge_reuse.anew.l.early:.2f}. One order of letters, and an adaptation gain chosen slow enough for the "
-        "start of a letter to show it: a fifth of the gain used elsewhere.",
+        "letter: w begins with {.integrator_kept.w.early:.2f} mrad against {.integrator_anew.w.early:.2f} from zero, l "
+        "with {.integrator_kept.l.early:.2f} against {.integrator_anew.l.early:.2f}; the network with "
+        "{.kept.w.early:.2f} against {.anew.w.early:.2f} and {.kept.l.early:.2f} against {.anew.l.early:.2f}. One "
+        "order of letters, and an adaptation gain chosen slow enough for the start of a letter to show it: a fifth of "
+        "the gain used elsewhere.",
     ),
 )

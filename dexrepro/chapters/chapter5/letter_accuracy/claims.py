@@ -51,9 +51,8 @@ CLAIMS = (
         printed=less(f"{PRINTED_SIGN}.n5.dmp_plus.ratio", 0.2),
         credits="the local biases of truncated kernels",
         note="The control is a DMP on twice as many kernels, which has as many weights: its error is "
-        "{letter_accuracy.default.n5.dmp_double.ratio:.2f} of the DMP's, the DMP+'s "
-        "{letter_accuracy.default.n5.dmp_plus.ratio:.2f}. Fitted by least squares like all others; fitted locally, the "
-        "DMP+ loses (T5.S).",
+        "{.default.n5.dmp_double.ratio:.2f} of the DMP's, the DMP+'s {.default.n5.dmp_plus.ratio:.2f}. Fitted by least "
+        "squares like all others; fitted locally, the DMP+ loses (T5.S).",
     ),
     fig_5_3(
         "C5.03",
@@ -64,9 +63,9 @@ CLAIMS = (
         credits=FEATURES,
         beside=on_real_letters("C5.03"),
         note="The control is a plain DMP with as many weights: it beats the DMP+ in "
-        "{letter_accuracy.default.n5.dmp_equal.beats_dmp_plus:.0%} of the draws, the IDMP in "
-        "{letter_accuracy.default.n5.idmp60.beats_dmp_plus:.0%}, and the IDMP beats that DMP in "
-        "{letter_accuracy.default.n5.idmp60.beats_dmp_equal:.0%}. The advantage is one of the number of weights.",
+        "{.default.n5.dmp_equal.beats_dmp_plus:.0%} of the draws, the IDMP in "
+        "{.default.n5.idmp60.beats_dmp_plus:.0%}, and the IDMP beats that DMP in "
+        "{.default.n5.idmp60.beats_dmp_equal:.0%}. The advantage is one of the number of weights.",
     ),
     fig_5_3(
         "C5.04",
@@ -86,11 +85,10 @@ CLAIMS = (
         readings={THIRTY: greater(f"{ACCURACY}.n20.idmp30.beats_dmp_plus", 0.9)},
         credits=FEATURES,
         beside=on_real_letters("C5.05"),
-        note="With 60 added features it beats the DMP+ in {letter_accuracy.default.n20.idmp60.beats_dmp_plus:.0%} of "
-        "the draws, with 30 in {letter_accuracy.default.n20.idmp30.beats_dmp_plus:.0%}, with 10 in "
-        "{letter_accuracy.default.n20.idmp10.beats_dmp_plus:.0%}; a plain DMP with as many weights as the largest IDMP "
-        "in {letter_accuracy.default.n20.dmp_equal.beats_dmp_plus:.0%}. More choices that turn the order "
-        "stand in T5.S.",
+        note="With 60 added features it beats the DMP+ in {.default.n20.idmp60.beats_dmp_plus:.0%} of the draws, with "
+        "30 in {.default.n20.idmp30.beats_dmp_plus:.0%}, with 10 in {.default.n20.idmp10.beats_dmp_plus:.0%}; a plain "
+        "DMP with as many weights as the largest IDMP in {.default.n20.dmp_equal.beats_dmp_plus:.0%}. More choices "
+        "that turn the order stand in T5.S.",
     ),
     fig_5_3(
         "C5.06",
@@ -105,10 +103,9 @@ CLAIMS = (
             f", the error being {{{REAL}.n20.idmp60.ratio.median:.2f}} of the DMP+'s on the median one; the synthetic "
             f"hand flatters. With less smoothing (20 Hz) it holds on {{real_handwriting.rough.holds.C5.06:.0%}}",
         ),
-        note="{letter_accuracy.default.n20.idmp60.ratio:.2f} of it with 60 added features, "
-        "{letter_accuracy.default.n20.idmp30.ratio:.2f} with 30, {letter_accuracy.default.n20.dmp_equal.ratio:.2f} for "
-        "a plain DMP with as many weights as the largest IDMP. The tremor that the smoothing leaves in the letters is "
-        "a floor for every method.",
+        note="{.default.n20.idmp60.ratio:.2f} of it with 60 added features, {.default.n20.idmp30.ratio:.2f} with 30, "
+        "{.default.n20.dmp_equal.ratio:.2f} for a plain DMP with as many weights as the largest IDMP. The tremor that "
+        "the smoothing leaves in the letters is a floor for every method.",
     ),
     fig_5_3(
         "C5.07",
@@ -118,8 +115,7 @@ CLAIMS = (
         printed=greater(f"{PRINTED_SIGN}.n5.ordered", 0.9),
         readings={THIRTY: greater(f"{ACCURACY}.n5.idmp30.ordered", 0.9)},
         beside=on_real_letters("C5.07"),
-        note="With as many weights each, the control, the order holds in "
-        "{letter_accuracy.default.n5.ordered_equal:.0%} of the draws.",
+        note="With as many weights each, the control, the order holds in {.default.n5.ordered_equal:.0%} of the draws.",
     ),
     fig_5_3(
         "C5.08",
@@ -145,9 +141,8 @@ CLAIMS = (
         printed=beyond_dmp_plus("idmp60", PRINTED_SIGN),
         credits="features that depend on the kernels nonlinearly",
         where="Remark 5.2",
-        note="As many plain kernels, the control, lower it as far: {letter_accuracy.default.n5.dmp_equal.mse:.1e} "
-        "against {letter_accuracy.default.n5.idmp60.mse:.1e} cm^2. Not to any accuracy: double precision and remaining "
-        "tremor end it.",
+        note="As many plain kernels, the control, lower it as far: {.default.n5.dmp_equal.mse:.1e} against "
+        "{.default.n5.idmp60.mse:.1e} cm^2. Not to any accuracy: double precision and remaining tremor end it.",
     ),
     ours_5_a(
         "C5.10",
@@ -163,9 +158,8 @@ CLAIMS = (
         printed=to_the_goal(PRINTED_SIGN),
         by_construction="every feature carries the factor s",
         note="As a limit, measured at ten times the duration; the DMP+ has features without that factor and ends up to "
-        "{letter_accuracy.default.n5.dmp_plus.limit:.1f} cm off. Soon after the end an IDMP without rest in its "
-        "training data is {letter_accuracy.no_rest.n20.idmp60.after:.0f} cm away (T5.S, no_rest), with rest "
-        "{letter_accuracy.default.n20.idmp60.after:.2f} cm.",
+        "{.default.n5.dmp_plus.limit:.1f} cm off. Soon after the end an IDMP without rest in its training data is "
+        "{.no_rest.n20.idmp60.after:.0f} cm away (T5.S, no_rest), with rest {.default.n20.idmp60.after:.2f} cm.",
     ),
     fig_5_3(
         "C5.30",
@@ -175,9 +169,8 @@ CLAIMS = (
         printed=greater(f"{PRINTED_SIGN}.n20.ordered", 0.9),
         readings={THIRTY: greater(f"{ACCURACY}.n20.idmp30.ordered", 0.9)},
         beside=on_real_letters("C5.30"),
-        note="In {letter_accuracy.default.n20.ordered:.0%} of the draws with 60 added features, in "
-        "{letter_accuracy.default.n20.idmp30.ordered:.0%} with 30; with as many weights each, the control, in "
-        "{letter_accuracy.default.n20.ordered_equal:.0%}.",
+        note="In {.default.n20.ordered:.0%} of the draws with 60 added features, in {.default.n20.idmp30.ordered:.0%} "
+        "with 30; with as many weights each, the control, in {.default.n20.ordered_equal:.0%}.",
     ),
     ours_5_a(
         "C5.31",

@@ -41,7 +41,7 @@ CLAIMS = (
         control=one_block_only(CROSSING, skill=3),
         printed=one_block_only(PRINTED_CROSSING),
         note="The control is the skill that was grown for three blocks. With the printed sign of D v the path is "
-        "{obstacle_crossing.printed_damping.skill1.rms:.1f} cm from the demonstrated one.",
+        "{.printed_damping.skill1.rms:.1f} cm from the demonstrated one.",
     ),
     fig_5_8(
         "C5.22",
@@ -54,8 +54,8 @@ CLAIMS = (
                 *(less(f"{CROSSING}.skill{b}.largest_step", 1.0) for b in (2, 3))
             ),
         },
-        note="The path changes less at every step in {obstacle_crossing.default.skill2.shrinks_always:.0%} of the "
-        "draws with two blocks and {obstacle_crossing.default.skill3.shrinks_always:.0%} with three.",
+        note="The path changes less at every step in {.default.skill2.shrinks_always:.0%} of the "
+        "draws with two blocks and {.default.skill3.shrinks_always:.0%} with three.",
     ),
     fig_5_8(
         "C5.23",
@@ -74,7 +74,7 @@ CLAIMS = (
         credits="the changed goal g",
         note="With a constant amplitude where start and goal agree, a known limit of the goal-scaled form; and with "
         "demonstrations that pass well clear, by our choice: with a narrow plateau the clearance is "
-        "{obstacle_crossing.narrow_plateau.goals3.clearance:.2f} cm (T5.F).",
+        "{.narrow_plateau.goals3.clearance:.2f} cm (T5.F).",
     ),
     fig_5_8(
         "C5.25",
@@ -92,8 +92,7 @@ CLAIMS = (
         where="(5.1), 5.5.3",
         note="The forcing of an axis is scaled by the difference of two heights that agree but for the hand's noise. "
         "With goals where the demonstration ends the paths clear the obstacle by "
-        "{obstacle_crossing.printed_amplitude.goals3.clearance:.2f} cm and end "
-        "{obstacle_crossing.printed_amplitude.goals3.end_error:.2f} cm off; sideways, where the goals differ by far "
-        "more than the demonstrated start and end, they swing widely.",
+        "{.printed_amplitude.goals3.clearance:.2f} cm and end {.printed_amplitude.goals3.end_error:.2f} cm off; "
+        "sideways, where the goals differ by far more than the demonstrated start and end, they swing widely.",
     ),
 )

@@ -27,8 +27,7 @@ CLAIMS = (
         credits="the adaptive neural law and its barrier",
         where="5.5.3",
         note="The control is PD control with gravity compensation as tuned for the letters, to the farthest goal: it "
-        "uses {obstacle_tracking.pd_three.bound_use:.0%} of the bound, the law "
-        "{obstacle_tracking.three_8.bound_use:.0%}, which is the initial error; the pen errs by "
-        "{obstacle_tracking.pd_three.tip_rms:.2f} against {obstacle_tracking.three_8.tip_rms:.2f} mm.",
+        "uses {.pd_three.bound_use:.0%} of the bound, the law {.three_8.bound_use:.0%}, which is the initial error; "
+        "the pen errs by {.pd_three.tip_rms:.2f} against {.three_8.tip_rms:.2f} mm.",
     ),
 )

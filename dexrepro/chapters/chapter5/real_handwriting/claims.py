@@ -14,10 +14,9 @@ CLAIMS = (
         greater(f"{REAL}.holds.C5.07", 0.8),
         control=greater(f"{REAL}.control.C5.07", 0.8),
         readings={"recordings smoothed less": greater(f"{ROUGH}.holds.C5.07", 0.8)},
-        note="In more than 90 % of the draws, as C5.07 asks, on {real_handwriting.default.holds.C5.07:.0%} of the "
-        "shapes, and in {real_handwriting.default.n5.ordered.least:.0%} on the worst. The control is its control: "
-        "as many weights each. Smoothed at {real_handwriting.cases.rough.hand.cutoff:g} Hz instead of "
-        "{real_handwriting.hand.cutoff:g} it holds on {real_handwriting.rough.holds.C5.07:.0%}.",
+        note="In more than 90 % of the draws, as C5.07 asks, on {.default.holds.C5.07:.0%} of the shapes, and in "
+        "{.default.n5.ordered.least:.0%} on the worst. The control is its control: as many weights each. Smoothed at "
+        "{.cases.rough.hand.cutoff:g} Hz instead of {.hand.cutoff:g} it holds on {.rough.holds.C5.07:.0%}.",
     ),
     ours_5_h(
         "C5.40",
@@ -25,10 +24,9 @@ CLAIMS = (
         greater(f"{REAL}.holds.C5.30", 0.8),
         control=greater(f"{REAL}.control.C5.30", 0.8),
         readings={"recordings smoothed less": greater(f"{ROUGH}.holds.C5.30", 0.8)},
-        note="In more than 90 % of the draws, as C5.30 asks, on {real_handwriting.default.holds.C5.30:.0%} of the "
-        "shapes, and in {real_handwriting.default.n20.ordered.least:.0%} on the worst. Smoothed at "
-        "{real_handwriting.cases.rough.hand.cutoff:g} Hz instead of {real_handwriting.hand.cutoff:g} it holds on "
-        "{real_handwriting.rough.holds.C5.30:.0%}.",
+        note="In more than 90 % of the draws, as C5.30 asks, on {.default.holds.C5.30:.0%} of the shapes, and in "
+        "{.default.n20.ordered.least:.0%} on the worst. Smoothed at {.cases.rough.hand.cutoff:g} Hz instead of "
+        "{.hand.cutoff:g} it holds on {.rough.holds.C5.30:.0%}.",
     ),
     ours_5_h(
         "C5.41",
@@ -36,12 +34,10 @@ CLAIMS = (
         less(f"{REAL}.holds.C5.06", 0.5),
         control=less(f"{REAL}.holds.C5.07", 0.5),
         readings={"recordings smoothed less": less(f"{ROUGH}.holds.C5.06", 0.5)},
-        note="C5.06 does not carry over to people's own letters: it holds on "
-        "{real_handwriting.default.holds.C5.06:.0%} of the shapes; the median over the shapes is "
-        "{real_handwriting.default.n20.idmp60.ratio.median:.2f} of the DMP+'s error, the best "
-        "{real_handwriting.default.n20.idmp60.ratio.least:.2f}. The synthetic hand flatters. Smoothed at "
-        "{real_handwriting.cases.rough.hand.cutoff:g} Hz instead of {real_handwriting.hand.cutoff:g} it holds on "
-        "{real_handwriting.rough.holds.C5.06:.0%}. The control asks the same of C5.07.",
+        note="C5.06 does not carry over to people's own letters: it holds on {.default.holds.C5.06:.0%} of the shapes; "
+        "the median over the shapes is {.default.n20.idmp60.ratio.median:.2f} of the DMP+'s error, the best "
+        "{.default.n20.idmp60.ratio.least:.2f}. The synthetic hand flatters. Smoothed at {.cases.rough.hand.cutoff:g} "
+        "Hz instead of {.hand.cutoff:g} it holds on {.rough.holds.C5.06:.0%}. The control asks the same of C5.07.",
     ),
     ours_5_h(
         "C5.42",

@@ -40,7 +40,7 @@ CLAIMS = (
         readings={"both blocks of weights learned anew, as (5.29) has it": gradual("style_transformation.relearn")},
         note="With the weights of the new features alone, as line 18 of Algorithm 5.1 has it. (5.29) as a whole, its "
         "start corrected, jumps with the first five features to "
-        "{style_transformation.relearn.z.first_step:.1%} of the distance to z; as printed it leads away from it.",
+        "{.relearn.z.first_step:.1%} of the distance to z; as printed it leads away from it.",
     ),
     fig_5_6(
         "C5.12",
@@ -53,7 +53,7 @@ CLAIMS = (
             for count in (15, 20, 30, 40)
         },
         note="At every step in every draw with 25 kernels, whose number the book does not print; with 20, k does so in "
-        "{style_transformation.n20.k.leaves_base:.0%} of the draws.",
+        "{.n20.k.leaves_base:.0%} of the draws.",
     ),
     fig_5_6(
         "C5.13",
@@ -75,10 +75,9 @@ CLAIMS = (
         },
         searched="initial kernels from 15 to 40, and hands whose via points move by a tenth of the letters' size",
         no_control="the order is a property of the shapes written, which the book shows and does not print",
-        note="Distance left after 15 features: z {style_transformation.default.z.after15:.2f}, k "
-        "{style_transformation.default.k.after15:.2f}, w {style_transformation.default.w.after15:.2f}, l "
-        "{style_transformation.default.l.after15:.2f}. Of the hands with other shapes "
-        "{style_transformation.shapes.early_order:.0%} give the book's order; by chance a sixth would.",
+        note="Distance left after 15 features: z {.default.z.after15:.2f}, k {.default.k.after15:.2f}, w "
+        "{.default.w.after15:.2f}, l {.default.l.after15:.2f}. Of the hands with other shapes "
+        "{.shapes.early_order:.0%} give the book's order; by chance a sixth would.",
     ),
     fig_5_6(
         "C5.15",
@@ -88,7 +87,7 @@ CLAIMS = (
         printed=small_difference(PRINTED_STYLES),
         credits="features common to all letters",
         note="For a letter alone on the same features, the control, the difference is the same: w "
-        "{style_transformation.alone.w.final:.3f} cm alone, {style_transformation.default.w.final:.3f} cm with three "
+        "{.alone.w.final:.3f} cm alone, {.default.w.final:.3f} cm with three "
         "others. Each letter's weights are fitted on their own; the features are random and too few.",
     ),
     Claim(
@@ -118,8 +117,7 @@ CLAIMS = (
         control=refined("again"),
         printed=refined("refined", PRINTED_STYLES),
         where="5.5.4",
-        note="30 features more, for one letter at a time: what is left of its difference is "
-        "{style_transformation.default.w.refined:.2g} (w) and {style_transformation.default.z.refined:.2g} (z). The "
-        "control is a second stage on the features of the first.",
+        note="30 features more, for one letter at a time: what is left of its difference is {.default.w.refined:.2g} "
+        "(w) and {.default.z.refined:.2g} (z). The control is a second stage on the features of the first.",
     ),
 )

@@ -25,9 +25,8 @@ CLAIMS = (
         ),
         where="Remark 6.6",
         note="The authors call it not conclusive. With k_n taken implicitly the error falls with k_2 (slope "
-        "{barrier_anatomy.feedforward.k2_slope:.2f} in logarithms, tracking gains alone; with the barrier the tube is "
-        "kept from k_2 = {barrier_anatomy.feedforward.k2_kept_from:g} on). Explicit steps on 100 points are unstable "
-        "from some k_2 on: between the printed one and the largest the error grows by "
-        "{barrier_anatomy.feedforward.coarse_decades:.0f} orders of magnitude.",
+        "{.feedforward.k2_slope:.2f} in logarithms, tracking gains alone; with the barrier the tube is kept from k_2 = "
+        "{.feedforward.k2_kept_from:g} on). Explicit steps on 100 points are unstable from some k_2 on: between the "
+        "printed one and the largest the error grows by {.feedforward.coarse_decades:.0f} orders of magnitude.",
     ),
 )

@@ -21,10 +21,10 @@ CLAIMS = (
         credits="the constrained primitives",
         where="6.4.2",
         note="The same squeeze for all paths. The control restores lengths and distance by geometry alone: the box "
-        "strays {box_carrying.geometry.box_error_max:.2f} cm at most, under the constrained primitives "
-        "{box_carrying.constrained.box_error_max:.2f} cm. Along the original paths it is lost with the occlusion "
-        "that we chose, and carried without ({box_carrying.original_no_occlusion.box_error_max:.1f} cm); with "
-        "stiff joints ({box_carrying.cases.stiff.law.frequency:g} rad/s) it strays "
-        "{box_carrying.stiff.box_error_max:.0f} cm along the constrained paths, too.",
+        "strays {.geometry.box_error_max:.2f} cm at most, under the constrained primitives "
+        "{.constrained.box_error_max:.2f} cm. Along the original paths it is lost with the occlusion "
+        "that we chose, and carried without ({.original_no_occlusion.box_error_max:.1f} cm); with "
+        "stiff joints ({.cases.stiff.law.frequency:g} rad/s) it strays "
+        "{.stiff.box_error_max:.0f} cm along the constrained paths, too.",
     ),
 )

@@ -22,11 +22,10 @@ CLAIMS = (
         printed=falls(*FOUR[:-1], "asymmetric_outside_printed"),
         credits="k_n with its share of the barrier",
         where="(6.21), Table 6.2",
-        note="dV/dt by differences at random states, {constraint_cases.states} for each case, and as many within a "
-        "ten-thousandth of the bound. Without the barrier's share of k_n, the control, V rises at "
-        "{constraint_cases.symmetric_inside.rising_without_share:.0f} states near the bound of the symmetric "
-        "tube, two couplings taken together. Three cases hold as printed; the second asymmetric one needs the "
-        "factor z_1 that (6.17) lacks.",
+        note="dV/dt by differences at random states, {.states} for each case, and as many within a ten-thousandth of "
+        "the bound. Without the barrier's share of k_n, the control, V rises at "
+        "{.symmetric_inside.rising_without_share:.0f} states near the bound of the symmetric tube, two couplings taken "
+        "together. Three cases hold as printed; the second asymmetric one needs the factor z_1 that (6.17) lacks.",
     ),
     Claim(
         "C6.13",

@@ -17,8 +17,8 @@ CLAIMS = (
             less(f"{COUPLED}.force_10.size", f"{COUPLED}.distance_10.size"),
             less(f"{COUPLED}.force_30.size", f"{COUPLED}.force_20.size"),
         ),
-        note="The error at the end is {coupled_primitives.force_30.end_error:.2g} cm with [19], "
-        "{coupled_primitives.distance_50.end_error:.1g} cm with [20].",
+        note="The error at the end is {.force_30.end_error:.2g} cm with [19], "
+        "{.distance_50.end_error:.1g} cm with [20].",
     ),
     ours_table_6_1(
         "C6.47",

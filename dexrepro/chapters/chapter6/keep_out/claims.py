@@ -35,9 +35,9 @@ CLAIMS = (
         searched="three readings of the acceleration, the barrier's weight 1 and H^2, three places of the obstacle",
         where="Remark 6.2, 6.3.3",
         note="Its Lyapunov function has its infimum at infinity: the error grows like sqrt(t). Weighted by 1 the "
-        "barrier is stepped over, in {keep_out.still_feedforward.stepped_over:.0f} of three runs "
-        "{keep_out.still_feedforward.last_distance:.1f} cm or more before the goal, and the law is undefined from "
-        "there; weighted by H^2 it is kept, and the nearest path ends {keep_out.still_feedforward_h2.goal_error:.1f} "
+        "barrier is stepped over, in {.still_feedforward.stepped_over:.0f} of three runs "
+        "{.still_feedforward.last_distance:.1f} cm or more before the goal, and the law is undefined from "
+        "there; weighted by H^2 it is kept, and the nearest path ends {.still_feedforward_h2.goal_error:.1f} "
         "cm from the goal. The safety filter arrives. A limit of Remark 6.2, which assumes that the reference goes "
         "to the goal: an obstacle does not.",
     ),

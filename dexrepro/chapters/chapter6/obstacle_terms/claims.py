@@ -29,8 +29,8 @@ CLAIMS = (
             "offsets of a millionth of a centimetre and more": less(f"{TERMS}.centroid.nearly_aligned_distance", 0.1)
         },
         note="For exact alignment with a point only: from an offset of a millionth of a centimetre on the path passes "
-        "at {obstacle_terms.centroid.nearly_aligned_distance:.2f} cm. The potential of [39], the control, keeps "
-        "{obstacle_terms.potential.aligned_distance:.2f} cm off even an aligned point.",
+        "at {.centroid.nearly_aligned_distance:.2f} cm. The potential of [39], the control, keeps "
+        "{.potential.aligned_distance:.2f} cm off even an aligned point.",
     ),
     fig_6_d(
         "C6.26",
@@ -47,10 +47,9 @@ CLAIMS = (
         searched="three representations of the obstacle for [16], the closest point for [39], 20 settings each",
         where="6.5, point 2",
         note="A bar is passed by a path that arrives. Of five with a half-width of 2 cm [16] passes up to "
-        "{obstacle_terms.boundary.bars_passed_20mm:.0f} with its authors' parameters and "
-        "{obstacle_terms.boundary.bars_tuned_20mm:.0f} with the best of 20 settings (boundary points; the centroid "
-        "{obstacle_terms.centroid.bars_tuned_20mm:.0f}); [39] stops before them "
-        "({obstacle_terms.potential.bars_tuned_20mm:.0f}). The control has the narrowest bars.",
+        "{.boundary.bars_passed_20mm:.0f} with its authors' parameters and {.boundary.bars_tuned_20mm:.0f} with the "
+        "best of 20 settings (boundary points; the centroid {.centroid.bars_tuned_20mm:.0f}); [39] stops before them "
+        "({.potential.bars_tuned_20mm:.0f}). The control has the narrowest bars.",
     ),
     fig_6_d(
         "C6.28",
@@ -70,10 +69,10 @@ CLAIMS = (
         searched="one point, the closest point and 30 boundary points for [16], one point and the closest point for "
         "[39]",
         where="6.5, point 3",
-        note="Operations a step, reference and nominal path included: {obstacle_terms.constrained.operations:.0f}; "
-        "[16] {obstacle_terms.centroid.operations:.0f} about one point and {obstacle_terms.boundary.operations:.0f} "
-        "about 30; [39], whose gradient is taken by differences, {obstacle_terms.potential.operations_point:.0f} "
-        "about one point and {obstacle_terms.potential.operations:.0f} about the closest one.",
+        note="Operations a step, reference and nominal path included: {.constrained.operations:.0f}; "
+        "[16] {.centroid.operations:.0f} about one point and {.boundary.operations:.0f} "
+        "about 30; [39], whose gradient is taken by differences, {.potential.operations_point:.0f} "
+        "about one point and {.potential.operations:.0f} about the closest one.",
     ),
     fig_6_d(
         "C6.29",

@@ -46,19 +46,18 @@ CLAIMS = (
         control=in_tube("no_barrier"),
         credits=BARRIER,
         where="6.4.1, (6.23)",
-        note="With tau = the segment's duration the largest distance is {planar_constraint.feedforward.e_max:.4f} cm "
-        "with the barrier and {planar_constraint.no_barrier.e_max:.4f} cm without: the tracking gains do the work. "
-        "With tau = 1 s they alone leave the tube ({planar_constraint.tau1_no_barrier.e_max:.2f} cm), and the barrier "
-        "as weighted in (6.9) is left by {planar_constraint.tau1_feedforward.violated_groups:.0f} groups of six.",
+        note="With tau = the segment's duration the largest distance is {.feedforward.e_max:.4f} cm "
+        "with the barrier and {.no_barrier.e_max:.4f} cm without: the tracking gains do the work. "
+        "With tau = 1 s they alone leave the tube ({.tau1_no_barrier.e_max:.2f} cm), and the barrier "
+        "as weighted in (6.9) is left by {.tau1_feedforward.violated_groups:.0f} groups of six.",
     ),
     fig_6_2d(
         "C6.07",
         "The distance to the reference is largest at the arc and vanishes quickly after it.",
         at_the_arc("printed", "feedforward"),
         control=at_the_arc("none"),
-        note="Back {planar_constraint.feedforward.settle_after_arc:.2f} s after the arc; the primitive "
-        "without extra term, the control, after {planar_constraint.none.settle_after_arc:.2f} s. Void for the "
-        "consistent law, which never leaves the reference.",
+        note="Back {.feedforward.settle_after_arc:.2f} s after the arc; the primitive without extra term, the control, "
+        "after {.none.settle_after_arc:.2f} s. Void for the consistent law, which never leaves the reference.",
     ),
     fig_6_2d(
         "C6.09",
@@ -82,7 +81,7 @@ CLAIMS = (
         where="6.3.3",
         note="In (6.21) V stays finite from any start inside; weighted by 1 in squared centimetres the barrier is "
         "thinner than a step, so that the path leaves the tube where it would leave it without barrier: from a "
-        "velocity error of 20 cm/s after {planar_constraint.consistent_fast.violated_from:.3f} s. On the reference "
+        "velocity error of 20 cm/s after {.consistent_fast.violated_from:.3f} s. On the reference "
         "the consistent law has no error to contain, with or without barrier.",
     ),
     Claim(
@@ -97,7 +96,7 @@ CLAIMS = (
         no_control="arithmetic on the printed values",
         where="Remark 6.6",
         note="Under the law the error has the poles k_z / d_z and k_2, 6 and 10 1/s, a damping ratio of "
-        "{planar_constraint.feedforward.damping_error:.3f} on which alpha_z has no influence (E6.17).",
+        "{.feedforward.damping_error:.3f} on which alpha_z has no influence (E6.17).",
     ),
     fig_6_2d(
         "C6.12",
@@ -107,8 +106,7 @@ CLAIMS = (
         credits="Assumption 6.1, that the reference does",
         where="6.3.3",
         note="For constraints that keep inside of a tube; the outside cases do not arrive, see C6.35. About a "
-        "reference that misses the goal by 1 cm, the control, the path ends {planar_constraint.stray.goal_error:.2f} "
-        "cm off it.",
+        "reference that misses the goal by 1 cm, the control, the path ends {.stray.goal_error:.2f} cm off it.",
     ),
     fig_6_2d(
         "C6.14",
@@ -148,9 +146,9 @@ CLAIMS = (
         ),
         control=every(greater(f"{LAW}.no_barrier.e_share", 1.0), kept("feedforward")),
         where="(6.9)",
-        note="The path rides the barrier, at {planar_constraint.tau1_feedforward_h2.e_share:.4f} of the tube; the "
+        note="The path rides the barrier, at {.tau1_feedforward_h2.e_share:.4f} of the tube; the "
         "literal law (6.15) with that weight leaves it at steps of 1 ms in "
-        "{planar_constraint.tau1_printed_h2.violated_groups:.0f} groups of six, which is a matter of sampling.",
+        "{.tau1_printed_h2.violated_groups:.0f} groups of six, which is a matter of sampling.",
     ),
     fig_6_2d(
         "C6.39",
@@ -165,9 +163,8 @@ CLAIMS = (
         searched="three readings of the acceleration",
         where="(6.21)",
         note="The consistent law alone fulfils the assumption of the proof; under it V rises in no step, nor does it "
-        "from a start {planar_constraint.cases.consistent_off.start.offset:g} cm off; as printed in up to "
-        "{planar_constraint.printed.v_rises:.0f} steps, with the recorded acceleration in up to "
-        "{planar_constraint.feedforward.v_rises:.0f}.",
+        "from a start {.cases.consistent_off.start.offset:g} cm off; as printed in up to {.printed.v_rises:.0f} steps, "
+        "with the recorded acceleration in up to {.feedforward.v_rises:.0f}.",
     ),
     fig_6_2d(
         "C6.48",
@@ -175,8 +172,8 @@ CLAIMS = (
         every(*(less(f"{LAW}.{law}.modified_share", 0.5) for law in READINGS)),
         control=less(f"{LAW}.feedforward.extended_modified_share", 0.5),
         where="6.5, point 3",
-        note="{planar_constraint.feedforward.modified_share:.0%} of sub-skill 2 lies off the previous path; of its "
-        "extended primitive, the control, {planar_constraint.feedforward.extended_modified_share:.0%}.",
+        note="{.feedforward.modified_share:.0%} of sub-skill 2 lies off the previous path; of its "
+        "extended primitive, the control, {.feedforward.extended_modified_share:.0%}.",
     ),
     fig_6_2d(
         "C6.49",
@@ -186,8 +183,7 @@ CLAIMS = (
         control=kept("junction_outside"),
         credits="the junction condition",
         where="6.3.1",
-        note="{planar_constraint.cases.junction.start.offset:g} cm off at the start, with margins of "
-        "{planar_constraint.cases.junction.cdmp.margin:g} and, the control, "
-        "{planar_constraint.cases.junction_outside.cdmp.margin:g} cm.",
+        note="{.cases.junction.start.offset:g} cm off at the start, with margins of {.cases.junction.cdmp.margin:g} "
+        "and, the control, {.cases.junction_outside.cdmp.margin:g} cm.",
     ),
 )

@@ -26,9 +26,9 @@ CLAIMS = (
         ),
         control=within(f"{SKILL}.book.pauses_in_one_max", 0.5, 1.5),
         note="Pauses stand in for the book's BP-AR-HMM: where they lie and how many there are is found, in every "
-        "demonstration one, within {planar_skill.book.pause_error_max:.2f} s; in a sub-skill alone, the control, none. "
+        "demonstration one, within {.book.pause_error_max:.2f} s; in a sub-skill alone, the control, none. "
         "The skills are learned from the change point of a library, which is told that there is one and errs by up to "
-        "{planar_skill.book.segmentation_error_max:.2f} s; with a penalty in place of the number it cuts the curved "
+        "{.book.segmentation_error_max:.2f} s; with a penalty in place of the number it cuts the curved "
         "strokes as well.",
     ),
     fig_6_2a(
@@ -63,11 +63,10 @@ CLAIMS = (
         },
         credits="primitives that know no obstacles",
         where="6.4.1, 6.3.1",
-        note="Of their points {planar_skill.book.inside_share_extended_old_min:.1%} to "
-        "{planar_skill.book.inside_share_extended_old_max:.1%} lie inside the original obstacles alone. Step 2 of "
-        "6.3.1 divides by constraints and sub-skills; Fig. 6.2c seems to extend whole sub-skills. Cut at the "
-        "constraint, extended primitives clear everything by "
-        "{planar_skill.local_intervals.clearance_extended_2_min:.2f} cm.",
+        note="Of their points {.book.inside_share_extended_old_min:.1%} to {.book.inside_share_extended_old_max:.1%} "
+        "lie inside the original obstacles alone. Step 2 of 6.3.1 divides by constraints and sub-skills; Fig. 6.2c "
+        "seems to extend whole sub-skills. Cut at the constraint, extended primitives clear everything by "
+        "{.local_intervals.clearance_extended_2_min:.2f} cm.",
     ),
     Claim(
         "C6.31",
@@ -81,11 +80,10 @@ CLAIMS = (
         control=less(f"{SKILL}.book.acceleration_extended_max", f"{SKILL}.book.acceleration_reference_min"),
         where="6.4.1",
         by_construction="the goal of a primitive is a parameter, fixed points know none",
-        note="The book names no measure. The goal moves by {planar_skill.book.moved_goal_reference_max:.1f} cm after "
-        "the reference was made; the extended primitive ends {planar_skill.book.moved_goal_extended_max:.3f} cm off "
-        "it. By the largest acceleration, the control, extended primitives gain nothing: between whole sub-skills they "
-        "need {planar_skill.book.acceleration_extended_max:.0f} cm/s^2, cut at the constraint "
-        "{planar_skill.local_intervals.acceleration_extended_max:.0f}, the spline "
-        "{planar_skill.book.acceleration_reference_max:.0f}.",
+        note="The book names no measure. The goal moves by {.book.moved_goal_reference_max:.1f} cm after the reference "
+        "was made; the extended primitive ends {.book.moved_goal_extended_max:.3f} cm off it. By the largest "
+        "acceleration, the control, extended primitives gain nothing: between whole sub-skills they need "
+        "{.book.acceleration_extended_max:.0f} cm/s^2, cut at the constraint "
+        "{.local_intervals.acceleration_extended_max:.0f}, the spline {.book.acceleration_reference_max:.0f}.",
     ),
 )

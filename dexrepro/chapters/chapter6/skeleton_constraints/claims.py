@@ -54,9 +54,9 @@ CLAIMS = (
         where="6.4.2, (6.25)",
         note="Without our projection, which the book does not have. The other two readings leave their barrier where a "
         "hidden elbow is far from where it should be; projected they stay within "
-        "{skeleton_constraints.feedforward.length_error_constrained:.2f} and "
-        "{skeleton_constraints.printed.length_error_constrained:.2f} cm. The references of the stages alone, geometry "
-        "without any primitive (the control), err by {skeleton_constraints.geometry.length_error_constrained:.3f} cm.",
+        "{.feedforward.length_error_constrained:.2f} and "
+        "{.printed.length_error_constrained:.2f} cm. The references of the stages alone, geometry "
+        "without any primitive (the control), err by {.geometry.length_error_constrained:.3f} cm.",
     ),
     Claim(
         "C6.21",
@@ -72,10 +72,9 @@ CLAIMS = (
         searched="three readings of the acceleration, each without our projection",
         where="6.4.2, (6.24)",
         note="As C6.20, without our projection; with it the distance errs by up to "
-        "{skeleton_constraints.feedforward.hands_error_constrained:.3f} cm, by geometry alone by "
-        "{skeleton_constraints.geometry.hands_error_constrained:.3f} cm. Both hands are held about their common "
-        "centre, each within half the printed margin; with 1 cm each the distance may leave the band. Held about the "
-        "other hand, 1 cm would do (E6.13).",
+        "{.feedforward.hands_error_constrained:.3f} cm, by geometry alone by {.geometry.hands_error_constrained:.3f} "
+        "cm. Both hands are held about their common centre, each within half the printed margin; with 1 cm each the "
+        "distance may leave the band. Held about the other hand, 1 cm would do (E6.13).",
     ),
     Claim(
         "C6.23",
@@ -95,11 +94,11 @@ CLAIMS = (
         control=less(f"{HANDS}.geometry.rmse_ratio_all", 0.8),
         credits="the constrained primitives",
         where="6.5",
-        note="Over all six joints {skeleton_constraints.feedforward.rmse_ratio_all:.2f} of the error is left, and "
-        "{skeleton_constraints.geometry.rmse_ratio_all:.2f} where lengths and distance are restored by geometry alone. "
-        "The left elbow keeps {skeleton_constraints.feedforward.rmse_ratio_elbow_left:.2f} of its error, the right one "
-        "{skeleton_constraints.feedforward.rmse_ratio_elbow_right:.2f}; the left shoulder, one of the best measured "
-        "joints, has {skeleton_constraints.feedforward.rmse_ratio_shoulder_left:.2f} of it afterwards.",
+        note="Over all six joints {.feedforward.rmse_ratio_all:.2f} of the error is left, and "
+        "{.geometry.rmse_ratio_all:.2f} where lengths and distance are restored by geometry alone. "
+        "The left elbow keeps {.feedforward.rmse_ratio_elbow_left:.2f} of its error, the right one "
+        "{.feedforward.rmse_ratio_elbow_right:.2f}; the left shoulder, one of the best measured "
+        "joints, has {.feedforward.rmse_ratio_shoulder_left:.2f} of it afterwards.",
     ),
 )
 REFERENCES = (

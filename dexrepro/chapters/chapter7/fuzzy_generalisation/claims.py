@@ -53,11 +53,11 @@ CLAIMS = (
         control=ORDINARY,
         printed=passes("printed_sign", "printed_kinematics"),
         readings={"the fuzzy sets kept, as 7.4.2 says": passes("same_sets"), AS_READ: passes("as_read")},
-        note="Smallest clearance {fuzzy_generalisation.main.clearance_three:.2f} cm with the obstacle on the path, "
-        "our choice, and the sets rescaled, as 7.3.2 says; {fuzzy_generalisation.same_sets.clearance_three:.2f} cm "
+        note="Smallest clearance {.main.clearance_three:.2f} cm with the obstacle on the path, "
+        "our choice, and the sets rescaled, as 7.3.2 says; {.same_sets.clearance_three:.2f} cm "
         "with the sets kept. Where the printed coordinates, read in cm, put it the ordinary path clears it already "
-        "(by {fuzzy_generalisation.as_read.ordinary_clearance:.2f} cm) and left turns into it. With a person who "
-        "lifts 1 cm less the clearance is {fuzzy_generalisation.lower_lift.clearance_three:.2f} cm (T7.S).",
+        "(by {.as_read.ordinary_clearance:.2f} cm) and left turns into it. With a person who "
+        "lifts 1 cm less the clearance is {.lower_lift.clearance_three:.2f} cm (T7.S).",
     ),
     fig_7_9(
         "C7.20",
@@ -66,7 +66,7 @@ CLAIMS = (
         control=passes("same_sets"),
         where="7.3.2",
         note="7.4.2 itself keeps the sets, because the board is the same; here this lowers the clearance from "
-        "{fuzzy_generalisation.main.clearance_three:.2f} to {fuzzy_generalisation.same_sets.clearance_three:.2f} cm.",
+        "{.main.clearance_three:.2f} to {.same_sets.clearance_three:.2f} cm.",
     ),
     fig_7_9(
         "C7.21",
@@ -83,9 +83,8 @@ CLAIMS = (
         "Every direction in between is usable.",
         greater(f"{FUZZY}.main.clearance_between", 0),
         source="ours",
-        note="{fuzzy_generalisation.main.clearance_between:.2f} cm at worst: averaging around and over gives neither. "
-        "Wider humps or sets leave {fuzzy_generalisation.wide_reaction.clearance_between:.2f} and "
-        "{fuzzy_generalisation.wide_sets.clearance_between:.2f} cm.",
+        note="{.main.clearance_between:.2f} cm at worst: averaging around and over gives neither. Wider humps or sets "
+        "leave {.wide_reaction.clearance_between:.2f} and {.wide_sets.clearance_between:.2f} cm.",
     ),
     fig_7_9(
         "C7.22",

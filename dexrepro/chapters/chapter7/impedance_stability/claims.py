@@ -21,8 +21,8 @@ CLAIMS = (
         printed=greater(f"{STABILITY}.displaced_printed.stable", 0.5),
         where="7.3.3",
         note="Too large for the sampling period, which no error of model or sensing is needed for: an exact model "
-        "without friction is unstable as well (torque travel {impedance_stability.exact_model.torque_travel:.0f} N m "
-        "a joint). The limit is where the sampled loop predicts it ({impedance_stability.limit_ratio:.2f} of it). As "
+        "without friction is unstable as well (torque travel {.exact_model.torque_travel:.0f} N m "
+        "a joint). The limit is where the sampled loop predicts it ({.limit_ratio:.2f} of it). As "
         "printed the law is unstable with a suitable k_s as well (E7.18).",
     ),
     Claim(

@@ -33,8 +33,7 @@ CLAIMS = (
         control=stable("constant_mean"),
         credits="the adaptive impedance",
         printed=PRINTED_LAW,
-        note="Errors {impedance_tracking.muscle.rms_error:.2g} mm, with a constant K of the same mean "
-        "{impedance_tracking.constant_mean.rms_error:.2g} mm.",
+        note="Errors {.muscle.rms_error:.2g} mm, with a constant K of the same mean {.constant_mean.rms_error:.2g} mm.",
     ),
     fig_7_11(
         "C7.27",
@@ -43,20 +42,17 @@ CLAIMS = (
         control=tracks("constant_mean"),
         credits="the adaptive impedance",
         printed=PRINTED_LAW,
-        note="Exact sensing: {impedance_tracking.muscle.rms_error:.2g} mm, and "
-        "{impedance_tracking.constant_mean.rms_error:.2g} mm with a constant K of the same mean. With encoders see "
-        "C7.27c.",
+        note="Exact sensing: {.muscle.rms_error:.2g} mm, and {.constant_mean.rms_error:.2g} mm with a constant K of "
+        "the same mean. With encoders see C7.27c.",
     ),
     ours_7_11(
         "C7.27c",
         "With the encoders of a desktop device it does so without chatter, too.",
         tracks("encoders"),
-        note="{impedance_tracking.encoders.rms_error:.2g} mm at a torque travel of "
-        "{impedance_tracking.encoders.torque_travel:.0f} N m a joint; integral action in place of the estimation "
-        "{impedance_tracking.encoders_integral.rms_error:.2g} mm at "
-        "{impedance_tracking.encoders_integral.torque_travel:.0f}, neither "
-        "{impedance_tracking.encoders_no_estimation.rms_error:.2g} mm at "
-        "{impedance_tracking.encoders_no_estimation.torque_travel:.0f}.",
+        note="{.encoders.rms_error:.2g} mm at a torque travel of {.encoders.torque_travel:.0f} N m a joint; integral "
+        "action in place of the estimation {.encoders_integral.rms_error:.2g} mm at "
+        "{.encoders_integral.torque_travel:.0f}, neither {.encoders_no_estimation.rms_error:.2g} mm at "
+        "{.encoders_no_estimation.torque_travel:.0f}.",
     ),
     ours_7_11(
         "C7.27b",
@@ -73,14 +69,14 @@ CLAIMS = (
         printed=less(f"{TRACKING}.jumps_robust_printed.rms_error", f"{TRACKING}.jumps_no_gain.rms_error", 0.1),
         where="7.3.3",
         note="Force jumps below eps. With Gamma just above alpha and a boundary layer, which r never leaves: a "
-        "constant K of Gamma eps over the layer gives {impedance_tracking.jumps_constant.rms_error:.3g} mm, (7.40) "
-        "{impedance_tracking.jumps_robust.rms_error:.3g} mm. As printed it chatters.",
+        "constant K of Gamma eps over the layer gives {.jumps_constant.rms_error:.3g} mm, (7.40) "
+        "{.jumps_robust.rms_error:.3g} mm. As printed it chatters.",
     ),
     ours_7_11(
         "C7.32",
         "Muscle-like impedance tracks better than its mean as a constant.",
         less(f"{TRACKING}.muscle.rms_error", f"{TRACKING}.constant_mean.rms_error"),
-        note="{impedance_tracking.muscle.rms_error:.2g} and {impedance_tracking.constant_mean.rms_error:.2g} mm; the "
+        note="{.muscle.rms_error:.2g} and {.constant_mean.rms_error:.2g} mm; the "
         "text claims stability and tracking only.",
     ),
     ours_7_11(
@@ -97,17 +93,15 @@ CLAIMS = (
         credits="time-delay estimation",
         printed=PRINTED_LAW,
         where="7.3.3",
-        note="Without it {impedance_tracking.no_estimation.rms_error:.3g} mm, with it "
-        "{impedance_tracking.muscle.rms_error:.2g} mm; integral action on the same K r, "
-        "{impedance_tracking.integral.rms_error:.2g} mm. With encoders "
-        "{impedance_tracking.encoders_no_estimation.rms_error:.3g}, {impedance_tracking.encoders.rms_error:.2g} and "
-        "{impedance_tracking.encoders_integral.rms_error:.2g} mm.",
+        note="Without it {.no_estimation.rms_error:.3g} mm, with it {.muscle.rms_error:.2g} mm; integral action on the "
+        "same K r, {.integral.rms_error:.2g} mm. With encoders {.encoders_no_estimation.rms_error:.3g}, "
+        "{.encoders.rms_error:.2g} and {.encoders_integral.rms_error:.2g} mm.",
     ),
     ours_7_11(
         "C7.33b",
         "It does so against tuned gains without it, too.",
         less(f"{TRACKING}.tuned_muscle.rms_error", f"{TRACKING}.tuned_no_estimation.rms_error", 0.01),
-        note="So does integral action: {impedance_tracking.tuned_no_estimation.rms_error:.3g} mm become "
-        "{impedance_tracking.tuned_integral.rms_error:.2g} mm.",
+        note="So does integral action: {.tuned_no_estimation.rms_error:.3g} mm become "
+        "{.tuned_integral.rms_error:.2g} mm.",
     ),
 )

@@ -37,7 +37,7 @@ CLAIMS = (
         "One group leaves a visible error when the old nodes' weights are fitted again, too.",
         greater(f"{LEARNING}.refit.rmse1", f"{LEARNING}.refit.spread"),
         source="ours",
-        note="The old kernels alone already fit the reactions to {reactive_learning.refit.plain_refit:.1g} cm.",
+        note="The old kernels alone already fit the reactions to {.refit.plain_refit:.1g} cm.",
     ),
     fig_7_8(
         "C7.11",
@@ -46,9 +46,8 @@ CLAIMS = (
         control=less(f"{LEARNING}.frozen.plain_refit", f"{LEARNING}.frozen.spread"),
         credits="the enhancement nodes",
         printed=less(f"{LEARNING}.printed_sign.shown_rmse", f"{LEARNING}.printed_sign.spread"),
-        note="The eight kernels of the primitive alone, fitted again, err by "
-        "{reactive_learning.frozen.plain_refit:.2g} cm, with five groups of enhancement nodes "
-        "{reactive_learning.frozen.shown_rmse:.2g} cm; repetitions spread by {reactive_learning.frozen.spread:.2g} cm.",
+        note="The eight kernels of the primitive alone, fitted again, err by {.frozen.plain_refit:.2g} cm, with five "
+        "groups of enhancement nodes {.frozen.shown_rmse:.2g} cm; repetitions spread by {.frozen.spread:.2g} cm.",
     ),
     fig_7_8(
         "C7.12",
@@ -57,7 +56,7 @@ CLAIMS = (
         control=less(f"{LEARNING}.frozen.plain_refit", 0.015),
         printed=to_the_floor("printed_sign"),
         where="Remark 7.2",
-        note="Down to a floor of {reactive_learning.frozen.rmse8:.1g} cm, which the smoothing of the demonstrations "
+        note="Down to a floor of {.frozen.rmse8:.1g} cm, which the smoothing of the demonstrations "
         "sets. The bound is for the sensor noise chosen; with more of it the floor is higher.",
     ),
     fig_7_8(
@@ -73,7 +72,7 @@ CLAIMS = (
         no_control="an attractor whose forcing fades ends at its goal: only half-learned or wrong forcing misses it",
         where="7.3.1",
         note="The final skill does; half-learned forcing terms do not fade in time: with one group of nodes the "
-        "movement ends {reactive_learning.frozen.end_error1:.2g} cm off.",
+        "movement ends {.frozen.end_error1:.2g} cm off.",
     ),
     fig_7_8(
         "C7.14",

@@ -29,9 +29,8 @@ CLAIMS = (
         searched="one or several style parameters, a factor a coordinate or a common one, all obstacles or one",
         where="(7.26), (7.27)",
         note="lambda_k reads as a number or a row of style parameters. One a coordinate errs by "
-        "{style_separation.per_coordinate.mean1:.2g} cm (two {style_separation.per_coordinate.mean2:.2g}, one for a "
-        "single obstacle {style_separation.one_obstacle.mean1:.2g}; repetitions spread by "
-        "{style_separation.per_coordinate.spread:.2g} cm). That two are enough, and one for an obstacle, holds by "
-        "construction: two moments of reaction, and the same hump in every direction.",
+        "{.per_coordinate.mean1:.2g} cm (two {.per_coordinate.mean2:.2g}, one for a single obstacle "
+        "{.one_obstacle.mean1:.2g}; repetitions spread by {.per_coordinate.spread:.2g} cm). That two are enough, and "
+        "one for an obstacle, holds by construction: two moments of reaction, and the same hump in every direction.",
     ),
 )

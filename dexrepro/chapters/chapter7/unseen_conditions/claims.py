@@ -12,7 +12,7 @@ CLAIMS = (
         "C7.23",
         "Leaving one condition out, fuzzy rules are closer than the nearest demonstration, on average.",
         less(f"{UNSEEN}.main.left_out_fuzzy", f"{UNSEEN}.main.left_out_nearest"),
-        note="On the mean: they win {unseen_conditions.main.left_out_wins:.0f} of twelve conditions.",
+        note="On the mean: they win {.main.left_out_wins:.0f} of twelve conditions.",
     ),
     ours_7_c(
         "C7.24",
@@ -26,10 +26,9 @@ CLAIMS = (
         "C7.24b",
         "In unseen conditions fuzzy rules are closer than a plane a direction.",
         less(f"{UNSEEN}.main.unseen_fuzzy", f"{UNSEEN}.main.unseen_plane"),
-        note="The synthetic person reacts linearly to the height, which favours the plane; it touches the obstacle "
-        "in {unseen_conditions.main.touches_plane:.0%} of the conditions (fuzzy rules "
-        "{unseen_conditions.main.touches_fuzzy:.0%}) and errs by {unseen_conditions.main.left_out_plane:.2f} cm when a "
-        "condition is left out ({unseen_conditions.main.left_out_fuzzy:.2f}).",
+        note="The synthetic person reacts linearly to the height, which favours the plane; it touches the obstacle in "
+        "{.main.touches_plane:.0%} of the conditions (fuzzy rules {.main.touches_fuzzy:.0%}) and errs by "
+        "{.main.left_out_plane:.2f} cm when a condition is left out ({.main.left_out_fuzzy:.2f}).",
     ),
     Claim(
         "C7.25",

@@ -43,8 +43,8 @@ CLAIMS = (
         _inside("broad", "fuzzy", "broad_unit", "fuzzy_unit"),
         control=_inside("orbit_left_fuzzy"),
         note="The control is a network that does not cover the path: its bound is violated at "
-        "{circle_tracking.orbit_left_fuzzy.violated_at:.3f} s. Elbow-up. Elbow-down with rate 1 it holds only for a "
-        "sampling time far below {circle_tracking.step:g} s (E8.01).",
+        "{.orbit_left_fuzzy.violated_at:.3f} s. Elbow-up. Elbow-down with rate 1 it holds only for a "
+        "sampling time far below {.step:g} s (E8.01).",
     ),
     fig_8_6(
         "C8.02",
@@ -54,14 +54,12 @@ CLAIMS = (
         credits=STRUCTURE,
         printed=_better("broad_unit", "fuzzy_unit"),
         readings={REVOLUTION: _better("broad", "fuzzy", "rms")},
-        note="With the rate 1 of the printed law it is a tie (x {circle_tracking.broad_unit.early_x:.3f} and "
-        "{circle_tracking.fuzzy_unit.early_x:.3f} mm). One constant node a network, integral action, at the gain of "
-        "the broad network: x/y {circle_tracking.node.early_x:.3f}/{circle_tracking.node.early_y:.3f} mm, broad "
-        "{circle_tracking.broad.early_x:.3f}/{circle_tracking.broad.early_y:.3f} mm, fixed "
-        "{circle_tracking.fuzzy.early_x:.3f}/{circle_tracking.fuzzy.early_y:.3f} mm. The width of the Gaussians, which "
-        "is not printed, decides: at 0.3 m the broad network errs by "
-        "{circle_tracking.wide_broad.early_x:.3f}/{circle_tracking.wide_broad.early_y:.3f} mm, the fixed one by "
-        "{circle_tracking.wide_fuzzy.early_x:.3f}/{circle_tracking.wide_fuzzy.early_y:.3f} mm (T8.Sa).",
+        note="With the rate 1 of the printed law it is a tie (x {.broad_unit.early_x:.3f} and "
+        "{.fuzzy_unit.early_x:.3f} mm). One constant node a network, integral action, at the gain of the broad "
+        "network: x/y {.node.early_x:.3f}/{.node.early_y:.3f} mm, broad {.broad.early_x:.3f}/{.broad.early_y:.3f} mm, "
+        "fixed {.fuzzy.early_x:.3f}/{.fuzzy.early_y:.3f} mm. The width of the Gaussians, which is not printed, "
+        "decides: at 0.3 m the broad network errs by {.wide_broad.early_x:.3f}/{.wide_broad.early_y:.3f} mm, the fixed "
+        "one by {.wide_fuzzy.early_x:.3f}/{.wide_fuzzy.early_y:.3f} mm (T8.Sa).",
     ),
     ours_8_8(
         "C8.02t",
@@ -72,28 +70,25 @@ CLAIMS = (
         ),
         note="Under friction. The wider, the better, until the Gaussians are flat over the circle and each network is "
         "an integrator; then the rate decides, up to where the first transient leaves a bound. There the broad network "
-        "bears a gain of {circle_tracking.tuned_broad.early_gain:.0f} and errs by "
-        "{circle_tracking.tuned_broad.early_x:.2f}/{circle_tracking.tuned_broad.early_y:.2f} mm in x/y, the fixed one, "
-        "all of whose nodes are there from the start, {circle_tracking.tuned_fuzzy.early_gain:.0f} and "
-        "{circle_tracking.tuned_fuzzy.early_x:.2f}/{circle_tracking.tuned_fuzzy.early_y:.2f} mm.",
+        "bears a gain of {.tuned_broad.early_gain:.0f} and errs by "
+        "{.tuned_broad.early_x:.2f}/{.tuned_broad.early_y:.2f} mm in x/y, the fixed one, all of whose nodes are there "
+        "from the start, {.tuned_fuzzy.early_gain:.0f} and {.tuned_fuzzy.early_x:.2f}/{.tuned_fuzzy.early_y:.2f} mm.",
     ),
     ours_8_a(
         "C8.03",
         "The advantage comes from the structure of the network: it remains at equal adaptation gain.",
         _better("broad", "fuzzy_matched"),
         note="The advantage is the higher gain, rate times |features|^2, that cos and sin bring: at the gain of the "
-        "broad network the fixed one errs by {circle_tracking.fuzzy_matched.early_x:.3f} mm in x (broad "
-        "{circle_tracking.broad.early_x:.3f}) and {circle_tracking.fuzzy_matched.early_y:.3f} mm in y (broad "
-        "{circle_tracking.broad.early_y:.3f}).",
+        "broad network the fixed one errs by {.fuzzy_matched.early_x:.3f} mm in x (broad {.broad.early_x:.3f}) and "
+        "{.fuzzy_matched.early_y:.3f} mm in y (broad {.broad.early_y:.3f}).",
     ),
     ours_8_a(
         "C8.03p",
         "Growing alone, without cos and sin, beats the fixed fuzzy network.",
         _better("broad_plain", "fuzzy"),
-        note="{circle_tracking.broad_plain.early_x:.3f} against {circle_tracking.fuzzy.early_x:.3f} mm in x; the fixed "
-        "grid with cos and sin has {circle_tracking.fuzzy_enhanced.early_x:.3f} mm, at a gain of "
-        "{circle_tracking.fuzzy_enhanced.early_gain:.0f} against {circle_tracking.broad.early_gain:.0f} of the broad "
-        "network.",
+        note="{.broad_plain.early_x:.3f} against {.fuzzy.early_x:.3f} mm in x; the fixed grid with cos and sin has "
+        "{.fuzzy_enhanced.early_x:.3f} mm, at a gain of {.fuzzy_enhanced.early_gain:.0f} against "
+        "{.broad.early_gain:.0f} of the broad network.",
     ),
     fig_8_7(
         "C8.04",
@@ -114,13 +109,11 @@ CLAIMS = (
         ),
         credits=STRUCTURE,
         readings={REVOLUTION: every(*(_better(case, "fuzzy", "rms") for case in ("broad", "broad_2", "broad_3")))},
-        note="So does one constant node a network ({circle_tracking.node.nodes:.0f} in all) at equal gain: x/y "
-        "{circle_tracking.node_3.early_x:.3f}/{circle_tracking.node_3.early_y:.3f} mm at the gain of the lowest "
-        "threshold, whose {circle_tracking.broad_3.nodes:.0f} nodes give "
-        "{circle_tracking.broad_3.early_x:.3f}/{circle_tracking.broad_3.early_y:.3f} mm. A node has three features: "
-        "{circle_tracking.broad.features:.0f}, {circle_tracking.broad_2.features:.0f} and "
-        "{circle_tracking.broad_3.features:.0f} against {circle_tracking.fuzzy.features:.0f}. Like C8.02 it hangs on "
-        "what is not printed (width, rates, m, beta_1).",
+        note="So does one constant node a network ({.node.nodes:.0f} in all) at equal gain: x/y "
+        "{.node_3.early_x:.3f}/{.node_3.early_y:.3f} mm at the gain of the lowest threshold, whose "
+        "{.broad_3.nodes:.0f} nodes give {.broad_3.early_x:.3f}/{.broad_3.early_y:.3f} mm. A node has three features: "
+        "{.broad.features:.0f}, {.broad_2.features:.0f} and {.broad_3.features:.0f} against {.fuzzy.features:.0f}. "
+        "Like C8.02 it hangs on what is not printed (width, rates, m, beta_1).",
     ),
     Claim(
         "C8.05f",
@@ -136,7 +129,7 @@ CLAIMS = (
         control=_rest("orbit_left_fuzzy"),
         where="8.3.3",
         note="After 1 s the barrier function never exceeds its initial value (with joint friction and rate 1 it "
-        "rises to {circle_tracking.friction_broad_unit.energy_ratio:.1f} times it). The control is a network that "
+        "rises to {.friction_broad_unit.energy_ratio:.1f} times it). The control is a network that "
         "does not cover the path. With the printed sign a limit cycle of a few Hz remains.",
     ),
     fig_8_8(
@@ -148,10 +141,10 @@ CLAIMS = (
         printed=_better("friction_broad_unit", "friction_fuzzy_unit"),
         readings={REVOLUTION: _better("friction_broad", "friction_fuzzy", "rms")},
         note="With the rate 1 of the printed law it is a tie: neither network does anything, the error in y rides its "
-        "bound at {circle_tracking.friction_broad_unit.early_y:.1f} of 10 mm. With tuned rates: x/y "
-        "{circle_tracking.friction_broad.early_x:.2f}/{circle_tracking.friction_broad.early_y:.2f} mm, one constant "
-        "node at equal gain {circle_tracking.friction_node.early_x:.2f}/{circle_tracking.friction_node.early_y:.2f} "
-        "mm, fixed {circle_tracking.friction_fuzzy.early_x:.2f}/{circle_tracking.friction_fuzzy.early_y:.2f} mm.",
+        "bound at {.friction_broad_unit.early_y:.1f} of 10 mm. With tuned rates: x/y "
+        "{.friction_broad.early_x:.2f}/{.friction_broad.early_y:.2f} mm, one constant "
+        "node at equal gain {.friction_node.early_x:.2f}/{.friction_node.early_y:.2f} "
+        "mm, fixed {.friction_fuzzy.early_x:.2f}/{.friction_fuzzy.early_y:.2f} mm.",
     ),
     ours_8_8(
         "C8.07m",
@@ -177,16 +170,15 @@ CLAIMS = (
         },
         note="Against static H-infinity of our design with equal stiffness, exact model and 20 % light model; the "
         "design the book cites was not consulted. With integral action it errs by "
-        "{circle_tracking.friction_hinf_integral_light.early_x:.2g}/"
-        "{circle_tracking.friction_hinf_integral_light.early_y:.2g} mm even with the light model, the broad network by "
-        "{circle_tracking.friction_broad.early_x:.2g}/{circle_tracking.friction_broad.early_y:.2g} mm.",
+        "{.friction_hinf_integral_light.early_x:.2g}/{.friction_hinf_integral_light.early_y:.2g} mm even with the "
+        "light model, the broad network by {.friction_broad.early_x:.2g}/{.friction_broad.early_y:.2g} mm.",
     ),
     ours_8_8(
         "C8.08t",
         "Under joint friction the broad network beats H-infinity control with every method the best of its search.",
         _better("tuned_broad", "tuned_hinf"),
         note="H-infinity with integral action and a 20 % light model errs by "
-        "{circle_tracking.tuned_hinf.early_x:.0e} mm in x from 5 to 10 s: the wider its band, the less, until the "
+        "{.tuned_hinf.early_x:.0e} mm in x from 5 to 10 s: the wider its band, the less, until the "
         "sampled loop diverges. Exact sensing at 1 kHz and joints without torque limits favour it.",
     ),
     fig_8_6(
@@ -198,10 +190,9 @@ CLAIMS = (
         printed=_inside("orbit_left_unit"),
         where="8.1",
         note="Two orbits that the printed grid does not cover: the fixed network violates a bound at "
-        "{circle_tracking.orbit_left_fuzzy.violated_at:.3f} and {circle_tracking.orbit_high_fuzzy.violated_at:.3f} s, "
-        "the broad one errs by {circle_tracking.orbit_left_broad.early_y:.2f} and "
-        "{circle_tracking.orbit_high_broad.early_y:.2f} mm in y, one constant node, which has no structure, by "
-        "{circle_tracking.orbit_left_node.early_y:.2f} and {circle_tracking.orbit_high_node.early_y:.2f} mm.",
+        "{.orbit_left_fuzzy.violated_at:.3f} and {.orbit_high_fuzzy.violated_at:.3f} s, the broad one errs by "
+        "{.orbit_left_broad.early_y:.2f} and {.orbit_high_broad.early_y:.2f} mm in y, one constant node, which has no "
+        "structure, by {.orbit_left_node.early_y:.2f} and {.orbit_high_node.early_y:.2f} mm.",
     ),
     fig_8_8(
         "C8.21",
@@ -211,8 +202,8 @@ CLAIMS = (
         credits="the barrier",
         where="8.1",
         note="With joint friction and rate 1, where the networks do next to nothing: without the barrier the bound is "
-        "violated at {circle_tracking.friction_no_barrier.violated_at:.1f} s. Without friction the error stays inside "
-        "without a barrier, too ({circle_tracking.no_barrier.max_y:.1f} of 10 mm in y).",
+        "violated at {.friction_no_barrier.violated_at:.1f} s. Without friction the error stays inside "
+        "without a barrier, too ({.no_barrier.max_y:.1f} of 10 mm in y).",
     ),
 )
 REFERENCES = (Reference(f"{CIRCLE}.fuzzy.nodes", 99, "8.4.1"),)

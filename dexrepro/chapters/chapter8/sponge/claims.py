@@ -21,7 +21,7 @@ CLAIMS = (
         every(less(f"{SPONGE}.learned.bound_used", 1.0), less(f"{SPONGE}.lqr.bound_used", 1.0)),
         control=less(f"{SPONGE}.lqr_printed.bound_used", 1.0),
         printed=less(f"{SPONGE}.at_50_hz.bound_used", 1.0),
-        note="At the printed 50 Hz a bound is violated after {sponge.at_50_hz.stopped_at:.2f} s on our model, which "
+        note="At the printed 50 Hz a bound is violated after {.at_50_hz.stopped_at:.2f} s on our model, which "
         "has no inner joint loops (E8.17). At 1 kHz with the arm's own gravity compensation, and with its exact "
         "inertia in what holds the redundant joints (the law itself has no model); simulated sponge.",
     ),
@@ -32,9 +32,9 @@ CLAIMS = (
         control=less(f"{SPONGE}.lqr_true.final_compression", f"{SPONGE}.lqr.final_compression"),
         credits="the adaptive impedance",
         printed=less(f"{SPONGE}.learned.final_compression", f"{SPONGE}.lqr_printed_environment.final_compression"),
-        note="At equal knowledge it is a tie: {sponge.learned.final_compression:.2f} mm learned, "
-        "{sponge.lqr_true.final_compression:.2f} mm for a regulator told the sponge of 400 N/m, "
-        "{sponge.lqr.final_compression:.2f} mm for one told 7 N/m. Below {sponge.crossing_stiffness:.0f} N/m, which "
+        note="At equal knowledge it is a tie: {.learned.final_compression:.2f} mm learned, "
+        "{.lqr_true.final_compression:.2f} mm for a regulator told the sponge of 400 N/m, "
+        "{.lqr.final_compression:.2f} mm for one told 7 N/m. Below {.crossing_stiffness:.0f} N/m, which "
         "the weights and the regulator's model fix, the wrong model compresses less.",
     ),
     Claim(
@@ -43,7 +43,7 @@ CLAIMS = (
         "It also has the lower peak compression, learning included.",
         less(f"{SPONGE}.learned.peak_compression", f"{SPONGE}.lqr.peak_compression"),
         source="ours",
-        note="The stiff initial gain and the exploration, both our choice, press {sponge.learned.peak_compression:.0f} "
+        note="The stiff initial gain and the exploration, both our choice, press {.learned.peak_compression:.0f} "
         "mm deep.",
     ),
     Claim(
@@ -66,8 +66,8 @@ CLAIMS = (
                 *(greater(f"{SPONGE}.learned.joint_nodes_{name}", 1.5) for name in "dc")
             )
         },
-        note="With task-space inputs there are {sponge.learned.nodes_d:.0f}, {sponge.learned.nodes_c:.0f} and "
-        "{sponge.learned.nodes_g:.0f} nodes at the end: that of C is the first and only one.",
+        note="With task-space inputs there are {.learned.nodes_d:.0f}, {.learned.nodes_c:.0f} and "
+        "{.learned.nodes_g:.0f} nodes at the end: that of C is the first and only one.",
     ),
     fig_8_13(
         "C8.18b",
@@ -75,9 +75,9 @@ CLAIMS = (
         every(*(within(f"{SPONGE}.learned.nodes_{name}", n - 0.5, n + 0.5) for name, n in zip("dcg", (14, 35, 38)))),
         no_control="D and G have one threshold and, as printed, one input: their counts are equal whatever is run",
         searched="task-space inputs, and joint angles and rates as inputs, with the printed thresholds",
-        note="Task-space inputs make {sponge.learned.nodes_d:.0f}, {sponge.learned.nodes_c:.0f} and "
-        "{sponge.learned.nodes_g:.0f}, joint inputs {sponge.learned.joint_nodes_d:.0f} for D and G and "
-        "{sponge.learned.joint_nodes_c:.0f} for C. The inputs of the networks, m and beta_1 are not printed (E8.16).",
+        note="Task-space inputs make {.learned.nodes_d:.0f}, {.learned.nodes_c:.0f} and "
+        "{.learned.nodes_g:.0f}, joint inputs {.learned.joint_nodes_d:.0f} for D and G and "
+        "{.learned.joint_nodes_c:.0f} for C. The inputs of the networks, m and beta_1 are not printed (E8.16).",
     ),
     Claim(
         "C8.19",

@@ -26,8 +26,8 @@ CLAIMS = (
         less(f"{OBJECT}.soft.force_rate", EXPLORATION),
         control=less(f"{OBJECT}.abrupt.force_rate", EXPLORATION),
         credits=SOFT,
-        note="The measured force changes at {unknown_object.soft.force_rate:.2f} N/s at most, slower than the "
-        "exploration moves it; with the abrupt change at {unknown_object.abrupt.force_rate:.2f} N/s.",
+        note="The measured force changes at {.soft.force_rate:.2f} N/s at most, slower than the "
+        "exploration moves it; with the abrupt change at {.abrupt.force_rate:.2f} N/s.",
     ),
     fig_8_10(
         "C8.10",
@@ -41,9 +41,9 @@ CLAIMS = (
             )
         },
         note="How x_0 follows from the law is not printed. Taken from the interaction law itself behind two lags the "
-        "indentation swings by {unknown_object.static_abrupt.oscillation:.0f} mm of way after the abrupt change and by "
-        "{unknown_object.static_soft.oscillation:.2g} mm after the soft one; with our integrating reference neither "
-        "swings ({unknown_object.abrupt.oscillation:.2g} mm abrupt).",
+        "indentation swings by {.static_abrupt.oscillation:.0f} mm of way after the abrupt change and by "
+        "{.static_soft.oscillation:.2g} mm after the soft one; with our integrating reference neither "
+        "swings ({.abrupt.oscillation:.2g} mm abrupt).",
     ),
     fig_8_10(
         "C8.11",
@@ -57,10 +57,9 @@ CLAIMS = (
         },
         searched="the regulator from K_0, as Fig. 8.11 shows it, with both references",
         note="Both laws start from the same K_0, as the book says and its Fig. 8.11 shows: force rate "
-        "{unknown_object.static_soft.force_rate:.2f} against {unknown_object.static_lqr_switched.force_rate:.2f} N/s, "
-        "oscillation {unknown_object.static_soft.oscillation:.2g} against "
-        "{unknown_object.static_lqr_switched.oscillation:.3g} mm. With the integrating reference neither oscillates "
-        "(rate {unknown_object.soft.force_rate:.2f} against {unknown_object.lqr_switched.force_rate:.2f} N/s); a "
+        "{.static_soft.force_rate:.2f} against {.static_lqr_switched.force_rate:.2f} N/s, oscillation "
+        "{.static_soft.oscillation:.2g} against {.static_lqr_switched.oscillation:.3g} mm. With the integrating "
+        "reference neither oscillates (rate {.soft.force_rate:.2f} against {.lqr_switched.force_rate:.2f} N/s); a "
         "regulator that is constant from the first contact, which Fig. 8.11 contradicts, has nothing to change.",
     ),
     fig_8_10(
@@ -69,9 +68,8 @@ CLAIMS = (
         every(*(less(f"{OBJECT}.{case}.bound_used", 1.0) for case in ("soft", "abrupt", "lqr"))),
         control=less(f"{OBJECT}.no_barrier.bound_used", 1.0),
         printed=less(f"{OBJECT}.plus.bound_used", 1.0),
-        note="It uses {unknown_object.soft.bound_used:.1%} of the bound, and without a barrier "
-        "{unknown_object.no_barrier.bound_used:.1%}: the barrier is not put to the test here. With tau_e = +K zeta, as "
-        "Algorithm 8.1 prints, a bound is violated.",
+        note="It uses {.soft.bound_used:.1%} of the bound, and without a barrier {.no_barrier.bound_used:.1%}: the "
+        "barrier is not put to the test here. With tau_e = +K zeta, as Algorithm 8.1 prints, a bound is violated.",
     ),
     ours_8_10(
         "C8.12s",
@@ -89,7 +87,7 @@ CLAIMS = (
         control=less(f"{OBJECT}.lqr.fraction_theory", f"{OBJECT}.lqr_true.fraction_theory", 1.01),
         printed=less(f"{OBJECT}.soft.desired_path_error", 0.01),
         note="Optimal for the printed cost with M = -1, which is not the circle's. It is off by "
-        "{unknown_object.soft.gain_error_x:.1g}, for the half step by which velocities of the physics engine lag. The "
+        "{.soft.gain_error_x:.1g}, for the half step by which velocities of the physics engine lag. The "
         "regressor s must obey (8.8); the desired path x_d/N does not (E8.09).",
     ),
     Claim(
@@ -106,14 +104,14 @@ CLAIMS = (
         by_construction="it follows from C8.13: no gain has a lower cost than the optimal one",
         note="At rest, computed from the gain and the object's stiffness; over the contact see C8.14w. The printed "
         "model of the regulator is wrong by a factor of ten in stiffness: told the true one, its cost is "
-        "{unknown_object.lqr_true.final_cost:.2f}, the learned gain's {unknown_object.soft.final_cost:.2f}, and the "
-        "wrong model's {unknown_object.lqr.final_cost:.2f}.",
+        "{.lqr_true.final_cost:.2f}, the learned gain's {.soft.final_cost:.2f}, and the "
+        "wrong model's {.lqr.final_cost:.2f}.",
     ),
     ours_8_10(
         "C8.14w",
         "The cost of the whole contact, learning included, is not higher than the regulator's.",
         less(f"{OBJECT}.soft.contact_cost", f"{OBJECT}.lqr.contact_cost"),
-        note="{unknown_object.soft.contact_cost:.3g} against {unknown_object.lqr.contact_cost:.3g}: the soft change "
+        note="{.soft.contact_cost:.3g} against {.lqr.contact_cost:.3g}: the soft change "
         "keeps the bad initial gain longest.",
     ),
     fig_8_11(
@@ -122,7 +120,7 @@ CLAIMS = (
         every(less(f"{OBJECT}.soft.surface_error", 0.1), less(f"{OBJECT}.soft.gain_error_x", 0.01)),
         control=less(f"{OBJECT}.absolute.gain_error_x", 0.01),
         note="The surface position is needed and comes from the first contact force [mm]; with "
-        "{unknown_object.noise.surface.1:g} m of error K_x is {unknown_object.soft.surface_low_gain_x:.3f} or "
-        "{unknown_object.soft.surface_high_gain_x:.3f} N/m in place of {unknown_object.soft.gain_x:.3f}.",
+        "{.noise.surface.1:g} m of error K_x is {.soft.surface_low_gain_x:.3f} or "
+        "{.soft.surface_high_gain_x:.3f} N/m in place of {.soft.gain_x:.3f}.",
     ),
 )
