@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -22,6 +23,15 @@ def folder_named(name: str, key: str = "results") -> Path:
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{key} = {name[:80]!r} is not allowed: it names no folder ({reason})") from error
     return path
+
+
+def whole_number(key: str, text: str, least: int, most: int) -> int:
+    """A whole number as the user writes it. Raises InputError for another word and beyond least..most."""
+    if re.fullmatch("[0-9]{1,12}", text) and least <= int(text) <= most:
+        return int(text)
+    raise InputError(
+        f"{key} = {text[:80] or 'null'} is not allowed: it must be a whole number of {least} or greater, {most} at most"
+    )
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

@@ -60,12 +60,11 @@ def selected(words: Iterable[str], command: str) -> Selection:
     if only or "figure" in values:
         figure = values.get("figure", "").strip("'\"") or None
         only = [experiment.name for number in numbers for experiment in select(number, only or None, figure)]
-    workers = values.get("workers")
     return Selection(
         numbers,
         only,
         folder_named(values.get("results", "results").strip("'\"")),
-        positive_workers(int(workers) if workers and workers.isdigit() else workers),
+        positive_workers(values.get("workers")),
         {key: value for key, value in values.items() if key in extra},
     )
 
@@ -182,6 +181,8 @@ def _quoted_item(item: re.Match[str]) -> str:
 
 def positive_workers(value: Any) -> int | None:
     """The number of processes, None for one a core."""
+    if isinstance(value, str) and re.fullmatch("[0-9]{1,12}", value):
+        value = int(value)
     if value is None or (isinstance(value, int) and not isinstance(value, bool) and value > 0):
         return value
     raise InputError(f"workers = {value} is not allowed: it must be a whole number of 1 or greater")
