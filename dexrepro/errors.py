@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import sys
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -22,6 +23,30 @@ def folder_named(name: str, key: str = "results") -> Path:
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{key} = {name[:80]!r} is not allowed: it names no folder ({reason})") from error
     return path
+
+
+def existing_folder(name: str | Path, key: str) -> Path:
+    """The same of a folder that has to be there."""
+    if not (folder := folder_named(str(name), key)).is_dir():
+        raise InputError(f"{key} = {name} is not allowed: there is no such folder")
+    return folder
+
+
+def importable(name: str | Path, key: str) -> Path:
+    """The same; its modules can be imported, by processes started from here, too, behind all that is installed."""
+    folder = existing_folder(name, key)
+    if (path := str(folder.resolve())) not in sys.path:
+        sys.path.append(path)
+    return folder
+
+
+def whole(text: object, key: str, low: int = 1, high: int = sys.maxsize) -> int:
+    """A whole number that a user has written. Raises InputError where it is none from low to high."""
+    if str(text).isdecimal() and low <= int(str(text)) <= high:
+        return int(str(text))
+    most = f", {high} at most" if high < sys.maxsize else ""
+    said = "null" if text in (None, "") else text
+    raise InputError(f"{key} = {said} is not allowed: it must be a whole number of {low} or greater{most}")
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

@@ -20,7 +20,7 @@ from dexrepro.config import (
     own_keys,
     parsed,
 )
-from dexrepro.errors import InputError, folder_named, nearest
+from dexrepro.errors import InputError, existing_folder, folder_named, nearest, whole
 from dexrepro.keys import KEYS, SELECTION, TAKEN
 from dexrepro.plan import select
 
@@ -60,12 +60,11 @@ def selected(words: Iterable[str], command: str) -> Selection:
     if only or "figure" in values:
         figure = values.get("figure", "").strip("'\"") or None
         only = [experiment.name for number in numbers for experiment in select(number, only or None, figure)]
-    workers = values.get("workers")
     return Selection(
         numbers,
         only,
         folder_named(values.get("results", "results").strip("'\"")),
-        positive_workers(int(workers) if workers and workers.isdigit() else workers),
+        positive_workers(values.get("workers")),
         {key: value for key, value in values.items() if key in extra},
     )
 
@@ -182,13 +181,9 @@ def _quoted_item(item: re.Match[str]) -> str:
 
 def positive_workers(value: Any) -> int | None:
     """The number of processes, None for one a core."""
-    if value is None or (isinstance(value, int) and not isinstance(value, bool) and value > 0):
-        return value
-    raise InputError(f"workers = {value} is not allowed: it must be a whole number of 1 or greater")
+    return None if value is None else whole(value, "workers")
 
 
 def existing(results: Path) -> Path:
     """A results folder from which something is to be read."""
-    if str(results) != "results" and not results.is_dir():
-        raise InputError(f"results = {results} is not allowed: there is no such folder")
-    return results
+    return results if str(results) == "results" else existing_folder(results, "results")

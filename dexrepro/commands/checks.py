@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from dexrepro.commands import FAILED, OK, SHOWN, WRONG, command, option, out, say, warn
 from dexrepro.commands.run import launch
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, whole
 from dexrepro.keys import SELECTION
 
 if TYPE_CHECKING:
@@ -140,9 +140,7 @@ def study_command(options: argparse.Namespace) -> int:
 
 
 def _samples(text: str | None) -> int | None:
-    if text is not None and not (text.isdecimal() and 1 <= int(text) <= 1024):
-        raise InputError(f"samples = {text} is not allowed: it must be a whole number of 1 or greater, 1024 at most")
-    return int(text) if text else None
+    return None if text is None else whole(text, "samples", 1, 1024)
 
 
 def _hours(text: str | None) -> float | None:
@@ -158,9 +156,7 @@ def _study_jobs(options: argparse.Namespace) -> int:
     from dexrepro.selection import selected
 
     values = dict(text.partition("=")[::2] for text in options.selection)
-    jobs = values.pop("jobs", "")
-    if not jobs.isdigit() or int(jobs) < 1:
-        raise InputError(f"jobs = {jobs or 'null'} is not allowed: it must be a whole number of 1 or greater")
+    jobs = whole(values.pop("jobs", ""), "jobs")
     launcher = [f"{key}={value}" for key, value in values.items() if key.startswith("hydra")]
     words = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
     numbers, only, folder, _, _ = selected(words, "study")

@@ -11,7 +11,7 @@ from typing import Any
 from rich.table import Table
 
 from dexrepro.commands import OK, command, option, out, say
-from dexrepro.errors import InputError, folder_named
+from dexrepro.errors import InputError, folder_named, whole
 
 
 @command(
@@ -61,7 +61,7 @@ def compare_command(options: argparse.Namespace) -> int:
     known, rest = _search_words(options.selection, "compare", "laws")
     if rest:
         raise InputError(f"'{rest[0]}' has no meaning here; see: dexrepro compare --help")
-    laws = tune.laws_in(folder_named(known["laws"], "laws"))
+    laws = tune.laws_in(known["laws"])
     results, names = known["results"], known["case"].split(",")
     rows = tune.leaderboard(
         names, laws, known["metric"].split(","), known["sign"],
@@ -90,14 +90,11 @@ def _search_words(words: Sequence[str], command: str, *needed: str) -> tuple[dic
     goals = [key for key in ("minimise", "maximise") if known.get(key)]
     if len(goals) != 1:
         raise InputError("give minimise=METRIC or maximise=METRIC: the metric of the case that is to be best")
-    budget = str(known.get("budget", "32"))
-    if not (budget.isdecimal() and 2 <= int(budget) <= 4096):
-        raise InputError(f"budget = {budget} is not allowed: it must be a whole number of 2 or greater, 4096 at most")
-    workers = known.get("workers")
+    budget = whole(known.get("budget", "32"), "budget", 2, 4096)
     known |= {
-        "metric": known[goals[0]], "sign": 1 if goals[0] == "minimise" else -1, "budget": int(budget),
+        "metric": known[goals[0]], "sign": 1 if goals[0] == "minimise" else -1, "budget": budget,
         "results": folder_named(known.get("results", "results")),
-        "workers": positive_workers(int(workers) if workers and workers.isdigit() else workers),
+        "workers": positive_workers(known.get("workers")),
     }  # fmt: skip
     return known, [word for word in words if word.partition("=")[0] not in own]
 
