@@ -18,7 +18,7 @@ from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
 from dexrepro.storage import finite
 
-LIBRARY = ("control", "networks", "primitives", "robots", "physics", "humans", "vision", "chapters")
+LIBRARY = ("control", "networks", "primitives", "robots", "physics", "humans", "vision", r"chapters\.\w+")
 
 
 def generator(seed: int, experiment: str, purpose: str) -> np.random.Generator:
@@ -80,7 +80,7 @@ def refuse_foreign(config: Any, where: str, allowed: Callable[[str], bool]) -> N
 def of_library(text: str) -> bool:
     """Whether a target is a class or function that a module of the library defines (not one that it imports)."""
     module, _, name = text.rpartition(".")
-    if not re.match(rf"dexrepro\.({'|'.join(LIBRARY)})\.", text):
+    if not re.match(rf"dexrepro\.({'|'.join(LIBRARY)})\.", text) or name.startswith("_"):
         return False
     try:
         found = getattr(importlib.import_module(module), name)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:  # Hydra is imported where it is needed: it takes as long as a
     from hydra.core.override_parser.types import Override
 
 SETTINGS = ("only", "case", "figure", "seed", "engine", "results", "workers", "case_timeout", "force", "quiet", "gui")
+LARGEST_SWEEP = 100_000  # jobs
 CASE = r"[\w+-]+"  # what names a case, and its files
 
 
@@ -271,6 +272,11 @@ def understood(overrides: Sequence[str]) -> list[Override]:
                 f"'{text[:200]}' is not an override of the form key=value, such as chapter=2, only=EXPERIMENT or "
                 "figure=2.7"
             )
+        if override.is_range_sweep():
+            sweep: Any = override.value()
+            count = math.ceil((sweep.stop - sweep.start) / sweep.step) if sweep.step else 0
+            if not 0 < count <= LARGEST_SWEEP:
+                raise InputError(f"'{text}' is not allowed: it makes {max(count, 0)} jobs, {LARGEST_SWEEP} at most")
         found.append(override)
     return found
 

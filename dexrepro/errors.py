@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 import sys
 from collections.abc import Iterable
 from contextlib import suppress
@@ -40,13 +41,13 @@ def importable(name: str | Path, key: str) -> Path:
     return folder
 
 
-def whole(text: object, key: str, low: int = 1, high: int = sys.maxsize) -> int:
-    """A whole number that a user has written. Raises InputError where it is none from low to high."""
-    if str(text).isdecimal() and low <= int(str(text)) <= high:
-        return int(str(text))
-    most = f", {high} at most" if high < sys.maxsize else ""
-    said = "null" if text in (None, "") else text
-    raise InputError(f"{key} = {said} is not allowed: it must be a whole number of {low} or greater{most}")
+def whole_number(key: str, text: str, least: int, most: int) -> int:
+    """A whole number as the user writes it. Raises InputError for another word and beyond least..most."""
+    if re.fullmatch("[0-9]{1,12}", text) and least <= int(text) <= most:
+        return int(text)
+    raise InputError(
+        f"{key} = {text[:80] or 'null'} is not allowed: it must be a whole number of {least} or greater, {most} at most"
+    )
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

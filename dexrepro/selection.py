@@ -20,7 +20,7 @@ from dexrepro.config import (
     own_keys,
     parsed,
 )
-from dexrepro.errors import InputError, existing_folder, folder_named, nearest, whole
+from dexrepro.errors import InputError, existing_folder, folder_named, nearest
 from dexrepro.keys import KEYS, SELECTION, TAKEN
 from dexrepro.plan import select
 
@@ -181,7 +181,11 @@ def _quoted_item(item: re.Match[str]) -> str:
 
 def positive_workers(value: Any) -> int | None:
     """The number of processes, None for one a core."""
-    return None if value is None else whole(value, "workers")
+    if isinstance(value, str) and re.fullmatch("[0-9]{1,12}", value):
+        value = int(value)
+    if value is None or (isinstance(value, int) and not isinstance(value, bool) and value > 0):
+        return value
+    raise InputError(f"workers = {value} is not allowed: it must be a whole number of 1 or greater")
 
 
 def existing(results: Path) -> Path:

@@ -43,7 +43,7 @@ def launch(arguments: Sequence[str], job: Callable[[Any], None]) -> None:
         hydra.main(str(config_dir().resolve()), "config", version_base="1.3")(job)()
     except (InputError, JobFailed):
         raise
-    except (HydraException, OmegaConfBaseException) as error:
+    except (HydraException, OmegaConfBaseException, ValueError, FileNotFoundError, PermissionError) as error:
         raise InputError(" ".join(str(error).split())) from error
     except Exception as error:  # each launcher has its own for a process that is gone
         reason = f"{type(error).__name__}: {str(error).strip().partition(chr(10))[0]}"

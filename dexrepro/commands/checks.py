@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from dexrepro.commands import FAILED, OK, SHOWN, WRONG, command, option, out, say, warn
 from dexrepro.commands.run import launch
-from dexrepro.errors import InputError, whole
+from dexrepro.errors import InputError, whole_number
 from dexrepro.keys import SELECTION
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ def study_command(options: argparse.Namespace) -> int:
 
 
 def _samples(text: str | None) -> int | None:
-    return None if text is None else whole(text, "samples", 1, 1024)
+    return None if text is None else whole_number("samples", text, 1, 1024)
 
 
 def _hours(text: str | None) -> float | None:
@@ -156,7 +156,7 @@ def _study_jobs(options: argparse.Namespace) -> int:
     from dexrepro.selection import selected
 
     values = dict(text.partition("=")[::2] for text in options.selection)
-    jobs = whole(values.pop("jobs", ""), "jobs")
+    jobs = whole_number("jobs", values.pop("jobs", ""), 1, 1024)
     launcher = [f"{key}={value}" for key, value in values.items() if key.startswith("hydra")]
     words = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
     numbers, only, folder, _, _ = selected(words, "study")

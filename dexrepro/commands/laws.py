@@ -11,7 +11,7 @@ from typing import Any
 from rich.table import Table
 
 from dexrepro.commands import OK, command, option, out, say
-from dexrepro.errors import InputError, folder_named, whole
+from dexrepro.errors import InputError, folder_named, whole_number
 
 
 @command(
@@ -90,9 +90,9 @@ def _search_words(words: Sequence[str], command: str, *needed: str) -> tuple[dic
     goals = [key for key in ("minimise", "maximise") if known.get(key)]
     if len(goals) != 1:
         raise InputError("give minimise=METRIC or maximise=METRIC: the metric of the case that is to be best")
-    budget = whole(known.get("budget", "32"), "budget", 2, 4096)
     known |= {
-        "metric": known[goals[0]], "sign": 1 if goals[0] == "minimise" else -1, "budget": budget,
+        "metric": known[goals[0]], "sign": 1 if goals[0] == "minimise" else -1,
+        "budget": whole_number("budget", known.get("budget", "32"), 2, 4096),
         "results": folder_named(known.get("results", "results")),
         "workers": positive_workers(known.get("workers")),
     }  # fmt: skip

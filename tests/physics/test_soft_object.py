@@ -29,19 +29,19 @@ def test_cushion_works_on_batches():
         )
 
 
-def held_body(friction: float, duration: float = 1.0, squeeze: float = 0.1):
-    """Two arms that cannot move hold a 0.3 kg body against gravity."""
-    with World(gravity=(0, 0, -9.81)) as world:
-        for name, x in (("left", 0.0), ("right", 0.4)):
+def held_body(friction, duration=1.0, squeeze=0.1, gravity=9.81, off=0.0, kick=None):
+    """Two arms that cannot move hold a 0.3 kg body, ``off`` the middle between them [m]; at 0.1 s it gets a kick."""
+    with World(gravity=(0, 0, -gravity)) as world:
+        for name, x in (("left", 0.7), ("right", 1.1)):
             arm = planar((0.1,), (1e6,), base=(x - 0.1, 0.0), effort=1e9)
             world.add_arm(name, arm, np.zeros(1))
-        world.add_sphere("ball", 0.05, (0.2, 0.0, 0.0), mass=0.3, collides=False, inertia=[0.01] * 3)
+        ball = world.add_sphere("ball", 0.05, (0.9 + off, 0.0, 0.0), mass=0.3, collides=False, inertia=[0.01] * 3)
         cushions = (Cushion(100.0, 1e-3, **SOFT), Cushion(100.0, 1e-3, **SOFT))
         world.add(
             SoftObject("grip", "ball", ("left", "right"), cushions, length=0.4 + squeeze, friction=friction,
                        shear=500.0, shear_damping=10.0, scale=lambda t: 1.0)
         )  # fmt: skip
-        return world.run(duration)
+        return world.run(duration, events=[(0.1, lambda: kick(ball))] if kick else ())
 
 
 def test_friction_carries_the_weight_with_the_shear_it_needs():
@@ -62,6 +62,29 @@ def test_without_enough_friction_the_body_slips_and_falls():
     np.testing.assert_allclose(  # what is fallen but for the elastic give, on both sides
         np.diff(run["grip.slip"][late]), np.diff(2 * (fallen - limit / 500.0)[late]), rtol=0.05
     )
+
+
+def test_a_body_off_the_middle_is_pushed_back_and_the_arms_apart():
+    run = held_body(friction=0.6, gravity=0.0, off=0.02)
+    assert run["ball.pose"][100, 0] < 0.92
+    assert abs(run["ball.pose"][-300:, 0].mean() - 0.9) < 2e-3
+    assert (run["left.force"][1:, 0] < 0).all()
+    assert (run["right.force"][1:, 0] > 0).all()
+    assert run["grip.force_right"][0] > run["grip.force_left"][0], "it is closer to the right arm"
+
+
+@pytest.mark.parametrize("across", [1, 2])
+def test_contacts_that_stick_turn_a_kicked_body_back(across):
+    def kick(ball):
+        for side in (-1, 1):
+            force = np.zeros(3)
+            force[across] = side * 40.0
+            ball.push_at(tuple(force), (ball.x + side * 0.2, ball.y, ball.z))
+
+    run = held_body(friction=5.0, gravity=0.0, duration=1.5, kick=kick)
+    turned = np.abs(run["ball.pose"][:, 3:6]).max(axis=1)
+    assert 1e-3 < turned.max() < 0.5
+    assert turned[-1] < 0.1 * turned.max()
 
 
 def test_a_part_across_a_line_has_none_along_it():

@@ -103,7 +103,9 @@ def test_another_case_is_shown_in_the_same_way(swing: tuple[Path, Experiment]) -
 
 def test_a_result_that_names_foreign_code_is_not_rendered(swing: tuple[Path, Experiment], tmp_path: Path) -> None:
     trap = tmp_path / "trap"
-    for target in ("pathlib.Path.touch", "dexrepro.storage.shutil.rmtree", "dexrepro.runner.redraw", "os.system"):
+    foreign = ["pathlib.Path.touch", "dexrepro.storage.shutil.rmtree", "dexrepro.runner.redraw", "os.system"]
+    imports = ["dexrepro.chapters.add", "dexrepro.chapters._package", "dexrepro.chapters.chapter7.skills.import_module"]
+    for target in foreign + imports:
         node = {"_target_": target, "self": str(trap)}
         config = {"cases": {"turn": {"law": None, "arm": node}, "still": {}}}
         (swing[0] / "config.yaml").write_text(yaml.safe_dump(config))

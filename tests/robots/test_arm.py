@@ -51,6 +51,12 @@ def test_uniform_rods_and_point_masses_have_the_textbook_moments():
     assert (point.com[0], point.inertia[5]) == (0.5, 0.0)
 
 
+def test_links_and_joints_of_a_planar_arm_are_counted_from_one():
+    arm = planar([0.5, 0.3], [1.0, 1.0])
+    assert [link.name for link in arm.links] == ["link1", "link2"]
+    assert [joint.name for joint in arm.joints] == ["joint1", "joint2"]
+
+
 def test_unknown_inertia_model_is_refused():
     with pytest.raises(ValueError, match="'discs' is neither"):
         planar([0.5], [1.0], "discs")

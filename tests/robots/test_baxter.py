@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from dexrepro.robots.baxter import baxter, extension, palm
+from dexrepro.robots.arm import Pose
+from dexrepro.robots.baxter import baxter, extension, mirrored, palm, posture
+from dexrepro.robots.kinematics import forward
 
 ARM = baxter("left")
 
@@ -33,3 +35,13 @@ def test_an_extension_ends_at_its_tip_and_a_palm_is_a_uniform_plate():
     plate = palm((0.3, 0.2, 0.1), mass=1.2)
     assert plate.tip.xyz == (0, 0, 0.05)
     assert plate.inertia == pytest.approx((0.1 * 0.05, 0, 0, 0.1 * 0.10, 0, 0.1 * 0.13))
+
+
+def test_the_arms_are_mirror_images():
+    right, left = (baxter(side, mount=Pose()) for side in ("right", "left"))
+    angles = np.random.default_rng(0).uniform(-1, 1, 7)
+    np.testing.assert_allclose(mirrored(mirrored(angles)), angles)
+    np.testing.assert_array_equal(mirrored(angles, "right"), angles)
+    np.testing.assert_array_equal(posture("left"), mirrored(posture("right")))
+    place, twin = (forward(arm, q)[0] for arm, q in ((right, angles), (left, mirrored(angles))))
+    np.testing.assert_allclose(twin, place * (1, -1, 1), atol=1e-6)

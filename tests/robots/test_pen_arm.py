@@ -36,6 +36,8 @@ def test_what_is_seen_and_touched_is_where_the_bodies_are():
         np.testing.assert_allclose(ends(rod), [(0, 0, 0), (LENGTH, 0, 0)], atol=1e-12)
     (stand,) = arm.base_shapes
     np.testing.assert_allclose(ends(turret)[0], ends(stand)[1], atol=1e-12, err_msg="the turret stands on the stand")
+    moments = arm.links[0].inertia_matrix
+    assert moments[0, 0] == moments[1, 1], "round about the axis that it turns about"
     assert ends(turret)[1][2] < 0, "and the upper arm passes above it"
     (body,) = pen().shapes
     np.testing.assert_allclose(

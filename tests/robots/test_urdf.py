@@ -313,6 +313,13 @@ def test_meshes_that_are_there_are_seen_and_touch_nothing(
         assert seen[3] == pytest.approx((2, 2, 2)) or not meshes
 
 
+def test_a_mesh_without_a_scale_is_as_large_as_its_file_says(tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text(OBJ)
+    path, text = tmp_path / "rod.urdf", ROD.format("turn", "0 0 0", 1, 0.001, 0.02, 0.02, 0, 0, 0)
+    path.write_text(text.replace("</inertial>", "</inertial>" + VISUAL.format("a.obj").replace(' scale="2 2 2"', "")))
+    assert from_urdf(str(path), "tip").links[0].shapes[0].size == (1, 1, 1)
+
+
 def test_meshes_that_are_not_there_are_capsules(tmp_path: Path) -> None:
     path = tmp_path / "rod.urdf"
     text = ROD.format("turn", "0 0 0", 1, 0.001, 0.02, 0.02, 0, 0, 0)
