@@ -43,7 +43,8 @@ QUOTED = {
     ): {10.0}, (
         "barrier_and_switch"
     ): {10.0},  # ms, of a definition of ours
-    "6.1": {16.0, 20.0}, "E6.14": {16.0, 34.0, 35.0}, "E7.27": {21.0},  # the book's, and what it may have meant
+    "2.10": {0.25},  # the book's, and what it may have meant
+    "6.1": {16.0, 20.0}, "E6.14": {16.0, 34.0, 35.0}, "E7.27": {21.0},
     "E4.07": {0.638},  # where the largest E of (4.26) is 1
 }  # fmt: skip
 """Numbers that follow from a definition, or are the book's and no parameter of ours."""
