@@ -7,6 +7,7 @@ import fnmatch
 import glob
 import hashlib
 import importlib.util
+import inspect
 import os
 import sys
 import tempfile
@@ -22,6 +23,7 @@ from dexrepro import chapters, closure
 from dexrepro.case import targets
 from dexrepro.checks import check_lengths, check_types, check_words, differences, leaves, same
 from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block
+from dexrepro.control.contract import KINDS
 from dexrepro.errors import InputError, folder_named, nearest
 from dexrepro.experiment import Experiment
 from dexrepro.physics.engine import REFERENCE, default
@@ -353,6 +355,44 @@ def import_anew(values: Mapping[str, Any]) -> None:
             with contextlib.suppress(OSError, NotImplementedError):
                 Path(importlib.util.cache_from_source(place)).unlink()
     importlib.invalidate_caches()
+
+
+def check_own(values: Mapping[str, Any]) -> None:
+    """Refuse a class of the user's that is not where a configuration says, and a law that nobody could call."""
+    for key, text in leaves(values):
+        name, _, last = str(text).rpartition(".")
+        if key.rpartition(".")[2] != "_target_" or name in ("", "__main__") or name.startswith("dexrepro"):
+            continue
+        try:
+            module = importlib.import_module(name)
+        except ImportError as error:
+            if "relative import" not in str(error):
+                continue  # what builds the objects says it well
+            raise InputError(f"{text}: {error}; name the law with its folder, or import without the dot") from error
+        except Exception:
+            continue
+        file, own = str(getattr(module, "__file__", None)), Path(*name.split(".")).with_suffix(".py")
+        if not hasattr(module, last):
+            if hidden := [
+                place for folder in sys.path if (place := Path(folder) / own).is_file() and file != str(place)
+            ]:
+                raise InputError(f"{text}: '{name}' is a module of Python or of a package already; rename {hidden[-1]}")
+            names = [key for key, thing in vars(module).items() if getattr(thing, "__module__", None) == name]
+            raise InputError(f"{text}: {file} has no '{last}'; {nearest(last, names)}")
+        law = getattr(module, last)
+        if not inspect.isclass(law) or (kind := getattr(law, "kind", None)) not in KINDS:
+            continue
+        for method, given in {
+            "reset": ["measured"],
+            "__call__": ["measured", "desired"][: 1 + (kind != "holding")],
+        }.items():
+            function = next((vars(base)[method] for base in law.__mro__ if method in vars(base)), None)
+            try:
+                inspect.signature(function).bind(law, *given)  # type: ignore[arg-type]
+            except TypeError:
+                raise InputError(
+                    f"{text} is no law of kind '{kind}': it must have {method}(self, {', '.join(given)})"
+                ) from None
 
 
 _imported: dict[Path, str] = {}

@@ -24,7 +24,7 @@ from dexrepro.case import run as run_case
 from dexrepro.checks import differences, leaves
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
-from dexrepro.plan import PARTIAL, Job, Plan, import_anew, outdated, own_digest, presentation
+from dexrepro.plan import PARTIAL, Job, Plan, check_own, import_anew, outdated, own_digest, presentation
 from dexrepro.pool import COMPLETES, Failure, Pool, start_method
 from dexrepro.progress import Progress, Silent
 from dexrepro.storage import (
@@ -121,6 +121,7 @@ def execute(job: Job) -> CaseEntry:
     experiment = chapters.load(job.chapter).experiment(job.experiment)
     import_anew(job.config)
     with warnings.catch_warnings(record=True) as caught, contextlib.chdir("."):  # a law may go elsewhere
+        check_own(job.config)
         config = live(job.config)
         if job.own != own_digest(job.config) and "__main__." not in str(job.config):
             raise InputError("a file that it uses was edited meanwhile; the same command runs it again")

@@ -48,7 +48,8 @@ Range = tuple[float, float]
 class Search:
     """What is tuned: a case of resolved ``values``, ranges by dotted key, a metric; ``sign`` is -1 to maximise it.
 
-    listed: the case is made from a list (``each``), so that only all of its experiment can be overridden.
+    listed: the case is made from a list (``each``), so that only all of its experiment can be overridden. guessed:
+    nobody has given the ranges, so that the search follows what is best beyond them.
     """
 
     chapter: str
@@ -60,6 +61,7 @@ class Search:
     sign: int
     seed: int
     listed: bool = False
+    guessed: bool = False
 
     @property
     def name(self) -> str:
@@ -126,11 +128,10 @@ def search_of(
         raise InputError(f"case = {case} is not allowed: it must be EXPERIMENT.CASE; {nearest(name, cases)}")
     values, declared = cases[name], _declared(numbers[0], experiment, composed)
     declared = {key: span for key, span in declared.items() if _is_number(value_at(values, key))}
-    ranges = dict(_asked(word, values, declared) for word in parameters) or _of_laws(
-        values, declared, composed[experiment]
-    )
+    ranges = dict(_asked(word, values, declared) for word in parameters)
+    ranges, guessed = (ranges, False) if ranges else _of_laws(values, declared, composed[experiment])
     listed = name not in (composed[experiment].get("cases") or {"default": {}})
-    return Search(numbers[0], experiment, name, values, ranges, metric, sign, composed["seed"], listed)
+    return Search(numbers[0], experiment, name, values, ranges, metric, sign, composed["seed"], listed, guessed)
 
 
 def _declared(chapter: str, experiment: str, composed: Mapping[str, Any]) -> dict[str, Range]:
@@ -165,19 +166,21 @@ def _asked(word: str, values: Mapping[str, Any], declared: Mapping[str, Range]) 
     return key, (low, high)
 
 
-def _of_laws(values: Mapping[str, Any], declared: Mapping[str, Range], block: Mapping[str, Any]) -> dict[str, Range]:
-    """What of the case's law declares a range; where nothing does, its own positive numbers, a quarter to four times.
+def _of_laws(
+    values: Mapping[str, Any], declared: Mapping[str, Range], block: Mapping[str, Any]
+) -> tuple[dict[str, Range], bool]:
+    """What of the case's law declares a range; where nothing does, its own positive numbers, a quarter to four times,
+    which is a guess.
 
     Its own are those that stand in it, not what it refers to, such as ``${shared.dt}``.
     """
     of_law = tuple(f"{law}." for law in _laws(values))
     found = {key: span for key, span in declared.items() if key.startswith(of_law)}
     own = {key: value for key, value in leaves(values) if key.startswith(of_law) and isinstance(value, float)}
-    return found or {
-        key: (value / 4, value * 4)
-        for key, value in own.items()
-        if value > 0 and not isinstance(value_at(block, key), str)
-    }
+    if found:
+        return found, False
+    own = {key: value for key, value in own.items() if value > 0 and not isinstance(value_at(block, key), str)}
+    return {key: (value / 4, value * 4) for key, value in own.items()}, True
 
 
 def _is_number(value: Any) -> bool:
@@ -268,7 +271,8 @@ def _rounds(search: Search, budget: int, rows: Sequence[Mapping[str, Any]]) -> I
         points = np.array(list(islice(unit, size)))
         if size and tried:
             best = np.array(min(tried, key=lambda row: search.sign * row["value"])["point"])
-            points = np.clip(best + SHRINK**number * (points - 0.5), 0, 1)
+            points = best + SHRINK**number * (points - 0.5)
+            points = points if search.guessed else np.clip(points, 0, 1)
         yield points
 
 
@@ -291,7 +295,8 @@ def _found(search: Search, rows: Sequence[Mapping[str, Any]]) -> Found:
     for share, (key, (low, high)) in zip(best["point"] or (), search.ranges.items()):
         if min(share, 1 - share) < EDGE:
             side = "lower" if share < EDGE else "upper"
-            edges.append(f"{key} = {best['parameters'][key]:g} lies at the {side} edge of {low:g}..{high:g}: widen it")
+            what = f"beyond or at the {side} end of the guess" if search.guessed else f"at the {side} edge of"
+            edges.append(f"{key} = {best['parameters'][key]:g} lies {what} {low:g}..{high:g}: widen it")
     failed = len(rows) - len(valid)
     return Found(rows[0]["value"], best["value"], dict(best["parameters"]), len(rows), failed, edges)
 
@@ -351,7 +356,7 @@ def joined(search: Search, target: str, law: type) -> Search | None:
             )
     ranges = {f"law.{name}": (float(low), float(high)) for name, (low, high) in spans.items()}
     case = target.rpartition(".")[2]
-    return replace(search, case=case, values={**search.values, "law": arguments}, ranges=ranges)
+    return replace(search, case=case, values={**search.values, "law": arguments}, ranges=ranges, guessed=False)
 
 
 def leaderboard(

@@ -39,6 +39,15 @@ def test_a_best_at_the_edge_of_its_range_is_said(toy):
     assert "upper edge of 0.5..1.2" in found.edges[0]
 
 
+def test_a_guessed_range_is_left_where_the_best_lies_beyond_it(toy):
+    given, _ = bowl(24, ranges={"start": (0.25, 1.1)})
+    found, path = bowl(24, ranges={"start": (0.25, 1.1)}, guessed=True)
+    assert given.chosen["start"] == pytest.approx(1.1, abs=0.03)
+    assert 1.2 < found.chosen["start"] < 1.4
+    assert "lies beyond or at the upper end of the guess 0.25..1.1: widen it" in found.edges[0]
+    assert json.loads(path.read_text())["edges"] == found.edges
+
+
 def test_a_search_that_was_made_repeats_no_run(toy, monkeypatch):
     before, _ = bowl(8)
     monkeypatch.setattr(tune.Pool, "add", lambda *_: pytest.fail("it ran again"))

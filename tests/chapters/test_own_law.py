@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from contextlib import nullcontext
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,9 +15,11 @@ from dexrepro.case import generator, live
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import Command, Measured, check, report
 from dexrepro.control.motion import Motion, rest
+from dexrepro.errors import InputError
 from dexrepro.physics.drive import JointDrive, Limited
 from dexrepro.physics.loop import LawFailed
 from dexrepro.physics.world import World
+from dexrepro.plan import check_own
 from dexrepro.robots.planar import planar
 
 
@@ -147,6 +152,49 @@ class Broken(Joint):
 
     def __call__(self, measured: Measured[Any], desired: Motion[Any]) -> Command:
         raise ZeroDivisionError("float division by zero")
+
+
+OWN = """class Mine:
+    kind = "holding"
+    def reset(self, measured): ...
+    def __call__(self, measured): return 0.0
+"""
+
+
+@pytest.mark.parametrize(
+    ("target", "change", "sentence"),
+    [
+        ("law_a.Mine", ("(self, measured): return", "(self, position, force): return"), "have __call__.self, measured"),
+        (
+            "law_b.Mine",
+            ("def reset(self, measured)", "def reset(self)"),
+            "kind 'holding': it must have reset.self, mea",
+        ),
+        ("law_c.Mine", ("    def reset(self, measured): ...\n", ""), "it must have reset.self, measured."),
+        ("law_d.Mine", ("    def __call__(self, measured): return 0.0\n", ""), "it must have __call__.self, measured."),
+        ("law_e.Mine", ("holding", "joint"), "it must have __call__.self, measured, desired."),
+        ("law_f.Min", ("", ""), "law_f.Min: .*law_f.py has no 'Min'; did you mean 'Mine'"),
+        ("signal.Mine", ("", ""), "'signal' is a module of Python or of a package already; rename .*signal.py"),
+        (
+            "law_g.Mine",
+            ("class", "from .law_f import Mine as Base\nclass"),
+            "name the law with its folder, or import wi",
+        ),
+        ("law_h.Mine", ("class", "@__import__('dataclasses').dataclass\nclass"), None),
+        ("law_i.part.Mine", ("class", "from . import part\nclass"), None),
+        ("law_j.Mine", ("(self, measured): return", "(self, measured, gain=1.0): return"), None),
+        ("fractions.Fraction", ("", ""), None),
+    ],
+)
+def test_a_law_that_is_not_there_or_cannot_be_called_gets_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, target: str, change: tuple[str, str], sentence: str | None
+) -> None:
+    monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path)])
+    place = (tmp_path / Path(*target.split(".")[:-1])).with_suffix(".py")
+    place.parent.mkdir(exist_ok=True)
+    place.write_text(OWN.replace(*change, 1))
+    with pytest.raises(InputError, match=sentence) if sentence else nullcontext():
+        check_own({"law": {"_target_": target}})
 
 
 def test_what_fails_is_the_law_and_not_its_adapter() -> None:

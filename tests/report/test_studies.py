@@ -6,7 +6,6 @@ import json
 from pathlib import Path
 
 import pytest
-from rich.console import Console
 
 from dexrepro import cli, study
 from dexrepro.plan import plan_chapter
@@ -73,10 +72,7 @@ def test_the_report_shows_stored_studies(summary: dict, toy: Path, monkeypatch: 
     assert "fragile: 10 of 20 draws, 30 % to 70 %" in (folder / "claims.html").read_text()
 
 
-def test_the_command_says_where_the_drawing_is(
-    toy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(cli, "out", Console(width=200, highlight=False))
+def test_the_command_says_where_the_drawing_is(toy: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["study", "chapter=90", "samples=2", "workers=1"]) == 0
     assert "drawn in results/studies/decay.svg" in capsys.readouterr().out
     assert (toy / "results/studies/decay.svg").exists()

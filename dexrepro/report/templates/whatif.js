@@ -18,7 +18,7 @@ function whatIf(place, study) {
   claim.addEventListener("input", suggest);
   const picture = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   const told = make("div", { ariaLive: "polite" });
-  place.append(make("h4", { textContent: "What if: every draw of the study" }), make("p", {}, claimLabel, parameterLabel), picture, told);
+  place.append(make("h3", { textContent: "What if: every draw of the study" }), make("p", {}, claimLabel, parameterLabel), picture, told);
   picture.setAttribute("viewBox", `0 0 ${FRAME.width} ${FRAME.height}`);
   picture.setAttribute("role", "img");
   picture.tabIndex = 0;

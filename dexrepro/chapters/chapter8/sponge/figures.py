@@ -39,7 +39,7 @@ FIGURES = {
     ),
 }
 UNITS = {
-    "sponge_force": "N", "reference": "m", "path": "m", "error": "m", "nodes": "1", "gain": "N/m, N", "phase": "1",
+    "sponge_force": "N", "reference": "m", "path": "m", "error": "m", "nodes": "1", "gain": "N/m", "phase": "1",
 }  # fmt: skip
 TABLES = {
     "T8.E": "Sponge: every method and variant",
@@ -132,9 +132,9 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     figure.legend(*depth.get_legend_handles_labels(), loc="outside lower center", ncols=5)
     less = metrics["lqr"]["final_compression"] - metrics["learned"]["final_compression"]
     more = metrics["learned"]["peak_compression"] - metrics["lqr"]["peak_compression"]
-    return style.title(
-        figure, f"The learned law presses {less:+.1f} mm less than the regulator in the end, {more:+.1f} mm more before"
-    )
+    end, before = (f"{abs(gap):.1f} mm {word[gap > 0]}" for gap, word in (
+        (less, ("more", "less")), (more, ("less", "more"))))  # fmt: skip
+    return style.title(figure, f"The learned law presses {end} than the regulator in the end, {before} before")
 
 
 def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
