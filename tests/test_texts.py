@@ -36,7 +36,9 @@ NO_NUMBERS = (
 )
 QUOTED = {
     "C1.27": {16.0},  # operations of a general product
-    **dict.fromkeys(("C4.03", "C4.19", "skill_reuse", "barrier_and_switch"), {10.0}),  # ms, of a definition of ours
+    **dict.fromkeys(
+        ("C4.03", "C4.19", "skill_reuse", "barrier_and_switch"), frozenset({10.0})
+    ),  # ms, of a definition of ours
     "2.10": {0.25},  # the book's, and what it may have meant
     "6.1": {16.0, 20.0},
     "E6.14": {16.0, 34.0, 35.0},
