@@ -10,11 +10,15 @@ from typing import Any
 
 from rich.table import Table
 
-from dexrepro.commands import FAILED, OK, SHOWN, command, err, option, out, say, warn
+from dexrepro.commands import FAILED, OK, SHOWN, command, option, out, say, warn
 from dexrepro.errors import InputError, folder_named
 from dexrepro.keys import SELECTION
 
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--info", "-i", "--hydra-help", "--resolve")
+WITHOUT_PYBULLET = (
+    "PyBullet is not installed here (its wheels are for Python 3.11 on Linux): MuJoCo simulates the arms; how its "
+    "numbers differ from those stored is in docs/how-to/engines.md"
+)
 MORE = """
   EXPERIMENT.key=value    any parameter (dexrepro show EXPERIMENT names them); what deviates from the book goes to runs/
   +scene=NAME             a scene, or another file, of the folder that --config-dir names
@@ -132,10 +136,7 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
         plans += chapter_plans
         skipped |= chapter_skipped
     if settings.get("engine") is None and any(REFERENCE != plan.engine in plan.versions for plan in plans):
-        err.print(
-            "PyBullet is not installed here (its wheels are for Python 3.11 on Linux): MuJoCo simulates the arms; how "
-            "its numbers differ from those stored is in docs/how-to/engines.md"
-        )
+        warn(WITHOUT_PYBULLET)
     quiet = bool(settings.get("quiet"))
     progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
     with progress if isinstance(progress, Bar) else nullcontext():
