@@ -359,7 +359,7 @@ def check_own(values: Mapping[str, Any]) -> None:
     """Refuse a class of the user's that is not where a configuration says, and a law that nobody could call."""
     for key, text in leaves(values):
         name, _, last = str(text).rpartition(".")
-        if key.rpartition(".")[2] != "_target_" or name in ("", "__main__") or name.startswith("dexrepro"):
+        if key.rpartition(".")[2] != "_target_" or name in ("", "__main__"):
             continue
         try:
             module = importlib.import_module(name)
