@@ -21,6 +21,7 @@ from typing import Any
 from dexrepro import chapters
 from dexrepro.config import in_quotes
 from dexrepro.errors import InputError
+from dexrepro.physics.engine import REFERENCE
 from dexrepro.plan import Plan, outdated, plan_chapter, select
 from dexrepro.pool import BLAS_THREADS
 from dexrepro.report.damage import check_result, read_table
@@ -295,6 +296,12 @@ def update_chapter(
     """
     overrides = [f"results='{results}'", *([f"only=[{','.join(only)}]"] if only else [])]
     plans, _ = plan_chapter(chapter, overrides)
+    foreign = [plan.experiment for plan in plans if REFERENCE != plan.engine in plan.versions]
+    if foreign and not chapters.is_added(chapter):
+        raise InputError(
+            f"the baselines of {', '.join(foreign)} are PyBullet's, which is not installed here: --update would "
+            "replace them by numbers of MuJoCo's"
+        )
     moved = [plan_chapter(chapter, overrides, perturbation=size)[0] for size in PERTURBATIONS]
     for number, group in enumerate(moved):
         for plan in group:

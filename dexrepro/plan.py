@@ -165,9 +165,7 @@ def _plan(
     results: Path,
     perturbation: float,
 ) -> Plan:
-    seed = config["seed"]
-    if not isinstance(seed, int):
-        raise InputError(f"seed = {seed!r} is not allowed: it must be a whole number of 0 or greater")
+    seed: int = config["seed"]
     cases, block = experiment_cases(config, name), resolved_block(config, name)
     for key in block:
         if key not in shipped[name]:

@@ -267,7 +267,8 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
     if tabulate := experiment.function("tabulate"):
         with _lenient(differs):
             for identifier, table in tabulate(recordings, nested, config).items():
-                table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
+                if len(table.columns):  # of some cases there may be nothing to tell
+                    table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
     if draw := experiment.function("draw"):
         with style.style(), _lenient(differs):
             for identifier, figure in draw(recordings, nested, config).items():

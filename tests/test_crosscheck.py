@@ -56,6 +56,8 @@ def test_where_pybullet_is_missing_the_book_is_simulated_by_mujoco(monkeypatch, 
     with pytest.raises(pytest.fail.Exception):
         cli.main(["run", "chapter=6", f"only={ARMS}", "results=nowhere"])
     assert "PyBullet is not installed here" in capsys.readouterr().err
+    with pytest.raises(InputError, match=f"baselines of {ARMS} are PyBullet's, which is not installed here"):
+        baselines.update_chapter("6", Path("nowhere"), [ARMS, NONE], accept=[], workers=1)
 
 
 def comparison(verdicts: tuple[str, str]) -> Comparison:

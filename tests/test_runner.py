@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import dexrepro
+from dexrepro import cli
 from dexrepro.case import generator
 from dexrepro.errors import InputError
 from dexrepro.plan import own_digest, plan_chapter
@@ -39,6 +40,14 @@ def test_a_run_writes_metrics_claims_series_tables_figures_and_provenance(toy: P
     assert (folder / "figures/fig_90_10.svg").exists()
     assert list(result.tables["T90.1"].case) == ["plain", "fast", "halved", "gain1", "gain2"]
     assert {"seed", "version", "revision", "packages", "wall", "steps", "real_time_factor"} <= set(result.run)
+
+
+def test_a_table_of_nothing_is_not_kept(toy: Path, toy_book: Path) -> None:
+    drawn = toy_book / "chapter90/decay/figures.py"
+    drawn.write_text(drawn.read_text("utf-8") + "\n\ntabulate = lambda *_: {'T90.1': pd.DataFrame()}\n", "utf-8")
+    outcome = run("case=plain")
+    assert not list(outcome.folders["decay"].rglob("T90.1*"))
+    assert cli.main(["report"]) == 0
 
 
 def test_what_is_there_is_not_run_again_unless_forced(toy: Path) -> None:

@@ -156,7 +156,7 @@ def test_what_is_decided_is_drawn_no_more(folder: Path, monkeypatch: pytest.Monk
     path = study.run("90", "decay", None, RESULTS)
     rows = {key: (row["word"], row["samples"]) for key, row in read_json(path)["claims"].items()}
     assert rows == {"C90.01": ("robust", 28), "C90.02": ("fragile", 16)}
-    cases = [set(entry["cases"]) for entry in study._read(study._lines(path))]
+    cases = [set(entry["cases"]) for entry in study.read_samples(study._lines(path))]
     assert cases == [{"plain", "fast", "gain2"}] * 16 + [{"plain", "fast"}] * 12
     monkeypatch.setattr(study.chapters, "load", lambda _: chapter)
     assert read_json(study.run("90", "decay", 28, RESULTS))["claims"]["C90.03"]["samples"] == 28, "the rest is added"
@@ -193,7 +193,7 @@ def test_a_study_resumes_and_survives_a_line_cut_short(folder: Path) -> None:
     lines.write_text("".join(kept[:3]) + kept[3][:20])
     study.run("90", "decay", 6, RESULTS, workers=1)
     assert lines.read_text().startswith("".join(kept[:3]))
-    assert [entry["index"] for entry in study._read(lines)] == list(range(6))
+    assert [entry["index"] for entry in study.read_samples(lines)] == list(range(6))
 
 
 def test_a_study_asked_for_less_forgets_nothing(folder: Path) -> None:
@@ -299,7 +299,7 @@ def test_only_an_update_writes_what_is_shipped(folder: Path) -> None:
     path = study.run("90", "decay", 3, RESULTS, workers=1, update=True)
     assert path == folder / "shipped/study/decay.json"
     assert read_json(path)["samples"] == 3
-    assert len(list(study._read(path.with_suffix(".jsonl.gz")))) == 3
+    assert len(list(study.read_samples(path.with_suffix(".jsonl.gz")))) == 3
 
 
 def test_of_two_studies_the_larger_is_shown_and_ours_where_equal(folder: Path) -> None:
@@ -309,7 +309,7 @@ def test_of_two_studies_the_larger_is_shown_and_ours_where_equal(folder: Path) -
     for samples, shown in ((3, 4), (4, 4), (9, 9)):
         for name in ("decay", "other"):
             (folder / f"shipped/study/{name}.json").write_text(
-                f'{{"chapter": "90", "samples": {samples}, "claims": {{}}}}'
+                f'{{"chapter": "90", "experiment": "{name}", "samples": {samples}, "varied": {{}}, "claims": {{}}}}'
             )
         decay, other = study.stored(RESULTS)
         assert decay["samples"] == shown
@@ -333,7 +333,7 @@ def test_a_study_in_a_checkout_changes_no_tracked_file(tmp_path: Path) -> None:
         shutil.copy2(ROOT / name, tmp_path / name)
     for arguments in (["init", "-q"], ["add", "-A"], ["commit", "-qm", "as it is"]):
         subprocess.run([*git, *arguments], check=True)
-    command = [sys.executable, "-m", "dexrepro", "study", "chapter=7", "claim=C7.01", "samples=4", "workers=1"]
+    command = [sys.executable, "-m", "dexrepro", "study", "chapter=1", "only=two_nuts", "samples=2", "workers=1"]
     env = {**os.environ, "PYTHONPATH": str(tmp_path)}
     done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, done.stderr

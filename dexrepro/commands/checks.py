@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dexrepro.commands import FAILED, OK, SHOWN, WRONG, command, option, out, say, warn
-from dexrepro.commands.run import launch
+from dexrepro.commands.run import WITHOUT_PYBULLET, launch
 from dexrepro.errors import InputError, whole_number
 from dexrepro.keys import SELECTION
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 def check_command(options: argparse.Namespace) -> int:
     """Exit status 0: same; 1: drift; 2: results missing."""
     from dexrepro import baselines
+    from dexrepro.physics.engine import REFERENCE, is_installed
     from dexrepro.selection import existing, quoted, selected
 
     numbers, only, results, workers, extra = selected(options.selection, "check")
@@ -51,6 +52,8 @@ def check_command(options: argparse.Namespace) -> int:
     else:
         for report in reports:
             _print_check(report)
+    if not (ok or is_installed(REFERENCE)):
+        warn(WITHOUT_PYBULLET)
     return OK if ok else FAILED
 
 

@@ -53,14 +53,16 @@ def test_what_holds_the_posture_does_not_move_the_task(as_force):
 
 def test_an_end_point_law_is_told_the_sensed_end_point_and_its_force_becomes_torque():
     law, model = Constant("end_point", Command(force=np.array([2.0, -1.0]))), RigidBodyModel(ARM)
-    drive = EndPointDrive(law, at_rest((0.3, 0.4)), model)
+    path = lambda time: Motion(np.array((0.3 + time, 0.4)), np.array((1.0, 0.0)), np.zeros(2))  # noqa: E731
+    drive = EndPointDrive(law, path, model)
     assert drive.error.tolist() == [0, 0], "before the first call"
     with World(gravity=(0, 0, 0)) as world:
         world.add_arm("arm", ARM, START)
         run = world.run(2e-3, {"arm": drive})
     np.testing.assert_allclose(run["arm.torque"][0], model.jacobian(START)[:2].T @ (2, -1), atol=1e-12)
     np.testing.assert_allclose(law.told[0][0].position, forward(ARM, START)[0][:2], atol=1e-12)
-    np.testing.assert_allclose(drive.error, law.told[-1][0].position - (0.3, 0.4))
+    np.testing.assert_allclose(drive.path.position, (0.301, 0.4))
+    np.testing.assert_allclose(drive.error, law.told[-1][0].position - (0.301, 0.4))
     assert law.resets == 1
 
 

@@ -100,6 +100,19 @@ def test_elastic_object_pushes_both_arms_apart_along_their_line():
     assert run["object.force"][0] == pytest.approx(2.25)
 
 
+@pytest.mark.parametrize(("stretched", "unilateral"), [(True, False), (True, True), (False, True)])
+def test_a_stretched_object_pulls_where_it_may(stretched, unilateral):
+    with World(gravity=FLAT) as world:
+        world.add_arm("arm", planar(*BOOK), FOLLOWER)
+        tip = forward(planar(*BOOK), FOLLOWER)[0]
+        rest = 0.1 if stretched else 0.5
+        world.add(Elastic("rod", ("arm", tip + (0.3, 0.0, 0.0)), 45.0, rest, unilateral=unilateral))
+        run = world.run(2e-3)
+    force = 0.0 if stretched and unilateral else 45.0 * (rest - 0.3)
+    assert run["rod.force"][0] == pytest.approx(force)
+    np.testing.assert_allclose(run["arm.force"][0], (-force, 0, 0), atol=1e-9)
+
+
 def test_unilateral_object_never_pulls_and_stiffness_may_vary_in_time():
     with World(gravity=FLAT) as world:
         world.add_arm("arm", planar(*BOOK), LEADER)
