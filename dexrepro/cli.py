@@ -27,7 +27,7 @@ from dexrepro.commands import (  # noqa: F401  each declares its commands
     run,
     warn,
 )
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, existing_folder
 from dexrepro.keys import TAKEN, described
 
 STATUSES = {
@@ -94,8 +94,7 @@ def _global_options(arguments: list[str]) -> list[str]:
     logging.getLogger("dexrepro").handlers = [_ToTerminal()]
     logging.getLogger("dexrepro").setLevel(logging.INFO if options.log else logging.WARNING)
     for folder in options.experiments:
-        if not folder.is_dir():
-            raise InputError(f"--experiments = {folder} is not allowed: there is no such folder")
+        existing_folder(folder, "--experiments")
         known = chapters.numbers()
         chapters.add(folder)
         if chapters.numbers() == known and not chapters.is_added(known[0]):

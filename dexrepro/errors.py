@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import sys
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -23,6 +24,21 @@ def folder_named(name: str, key: str = "results") -> Path:
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{key} = {name[:80]!r} is not allowed: it names no folder ({reason})") from error
     return path
+
+
+def existing_folder(name: str | Path, key: str) -> Path:
+    """The same of a folder that has to be there."""
+    if not (folder := folder_named(str(name), key)).is_dir():
+        raise InputError(f"{key} = {name} is not allowed: there is no such folder")
+    return folder
+
+
+def importable(name: str | Path, key: str) -> Path:
+    """The same; its modules can be imported, by processes started from here, too, behind all that is installed."""
+    folder = existing_folder(name, key)
+    if (path := str(folder.resolve())) not in sys.path:
+        sys.path.append(path)
+    return folder
 
 
 def whole_number(key: str, text: str, least: int, most: int) -> int:

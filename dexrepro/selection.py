@@ -20,7 +20,7 @@ from dexrepro.config import (
     own_keys,
     parsed,
 )
-from dexrepro.errors import InputError, folder_named, nearest
+from dexrepro.errors import InputError, existing_folder, folder_named, nearest
 from dexrepro.keys import KEYS, SELECTION, TAKEN
 from dexrepro.plan import select
 
@@ -190,6 +190,4 @@ def positive_workers(value: Any) -> int | None:
 
 def existing(results: Path) -> Path:
     """A results folder from which something is to be read."""
-    if str(results) != "results" and not results.is_dir():
-        raise InputError(f"results = {results} is not allowed: there is no such folder")
-    return results
+    return results if str(results) == "results" else existing_folder(results, "results")

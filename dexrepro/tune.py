@@ -11,7 +11,6 @@ import copy
 import importlib
 import inspect
 import re
-import sys
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import chdir, suppress
@@ -30,7 +29,7 @@ from dexrepro.case import run as run_case
 from dexrepro.checks import leaves, set_value, value_at
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import KINDS
-from dexrepro.errors import InputError, nearest
+from dexrepro.errors import InputError, importable, nearest
 from dexrepro.experiment import Metrics
 from dexrepro.plan import content_of, lacking, writable
 from dexrepro.pool import Failure, Pool
@@ -304,12 +303,9 @@ def _found(search: Search, rows: Sequence[Mapping[str, Any]]) -> Found:
 # -------------------------------------------------------------------------------------------------- laws of a folder
 
 
-def laws_in(folder: Path) -> dict[str, type]:
+def laws_in(folder: str | Path) -> dict[str, type]:
     """The laws that the modules of a folder define, by what ``_target_`` calls them."""
-    if not folder.is_dir():
-        raise InputError(f"laws = {folder} is not allowed: there is no such folder")
-    if (path := str(folder.resolve())) not in sys.path:
-        sys.path.append(path)
+    folder = importable(folder, "laws")
     found = {}
     for file in sorted(folder.glob("*.py")):
         if file.stem.startswith(("test_", "_", "conftest")):

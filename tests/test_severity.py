@@ -52,7 +52,7 @@ STOPPED = "a run is stopped at its bound, so that 1 says that it was met and is 
 TURNING = {
     "C1.32": "on a stiff object the law goes on oscillating, and how far follows the smallest change of the start",
     "C3.10b": "a free tool axis meets a joint limit, where the smallest change decides how far the arm goes",
-    "C3.14b": "limited torques settle after 3 s or not within the run, and the claim fails either way",
+    "C3.14b": "from a perturbed start it does not settle within the run, by which the tolerance exceeds the number",
     "C3.19": "trained in single precision; by construction",
     "C4.03": "its rivals chatter, and a tolerance is ten times the change seen, at which it does not turn",
     "C4.13": "the control ties in both errors; all three numbers at the ends of their tolerances would pass it",

@@ -36,17 +36,15 @@ NO_NUMBERS = (
 )
 QUOTED = {
     "C1.27": {16.0},  # operations of a general product
-    "C4.03": {10.0}, (
-        "C4.19"
-    ): {10.0}, (
-        "skill_reuse"
-    ): {10.0}, (
-        "barrier_and_switch"
-    ): {10.0},  # ms, of a definition of ours
+    **dict.fromkeys(
+        ("C4.03", "C4.19", "skill_reuse", "barrier_and_switch"), frozenset({10.0})
+    ),  # ms, of a definition of ours
     "2.10": {0.25},  # the book's, and what it may have meant
-    "6.1": {16.0, 20.0}, "E6.14": {16.0, 34.0, 35.0}, "E7.27": {21.0},
+    "6.1": {16.0, 20.0},
+    "E6.14": {16.0, 34.0, 35.0},
+    "E7.27": {21.0},
     "E4.07": {0.638},  # where the largest E of (4.26) is 1
-}  # fmt: skip
+}
 """Numbers that follow from a definition, or are the book's and no parameter of ours."""
 CONVENTIONS = frozenset({0.9, 0.95})
 """Quantiles and intervals that are shown."""

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
-from pathlib import Path
 from typing import Any
 
 from rich.table import Table
 
 from dexrepro.commands import FAILED, OK, SHOWN, command, option, out, say, warn
-from dexrepro.errors import InputError, folder_named
+from dexrepro.errors import InputError, importable
 from dexrepro.keys import SELECTION
 
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--info", "-i", "--hydra-help", "--resolve")
@@ -75,22 +73,13 @@ def _config_dir_option(arguments: list[str]) -> tuple[str | None, list[str]]:
         if argument in ("--config-dir", "-cd"):
             if index + 1 == len(arguments):
                 raise InputError("--config-dir needs a folder")
-            extra_dir = str(folder_named(arguments[index + 1], argument))
+            extra_dir = arguments[index + 1]
             del rest[index : index + 2]
         elif argument.startswith("--config-dir="):
-            extra_dir = str(folder_named(argument.partition("=")[2], "--config-dir"))
+            extra_dir = argument.partition("=")[2]
             rest.remove(argument)
-    if extra_dir is not None:
-        _make_importable(extra_dir)
-    return extra_dir, rest
-
-
-def _make_importable(folder: str) -> None:
-    """Let ``_target_`` name classes of files in the user's folder, here and in the processes started from here."""
-    if not Path(folder).is_dir():
-        raise InputError(f"--config-dir = {folder} is not allowed: there is no such folder")
-    if (path := str(Path(folder).resolve())) not in sys.path:
-        sys.path.append(path)
+    # its classes can be named by _target_
+    return None if extra_dir is None else str(importable(extra_dir, "--config-dir")), rest
 
 
 def run_overrides(overrides: Sequence[str], extra_dir: str | None = None) -> int:
@@ -169,7 +158,7 @@ def _run_job(config: Any) -> None:
     enter_launch_folder()
     overrides, extra_dir = job_overrides()
     if extra_dir is not None:
-        _make_importable(extra_dir)
+        importable(extra_dir, "--config-dir")
     if failures := _sentences(_run(overrides, extra_dir)):
         raise JobFailed("; ".join(failures))
 

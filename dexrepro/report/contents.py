@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import json
 import os
 import re
@@ -319,12 +321,19 @@ def _thumbnail(source: Path, target: Path) -> None:
 
 
 def _light(svg: str) -> str:
-    """A drawing with its paths to a hundredth of a point, which nobody sees: a quarter lighter."""
+    """A drawing at a third of its weight, which nobody sees: paths to a hundredth of a point, 256 colours a picture."""
 
     def rounded(path: re.Match[str]) -> str:
         return " ".join(re.sub(r"-?\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", path[0]).split())
 
-    return re.sub(r'(?<= d=")[^"]*', rounded, svg)
+    def few_colours(picture: re.Match[str]) -> str:
+        with Image.open(io.BytesIO(base64.b64decode(picture[0]))) as image:
+            opaque = image.mode != "RGBA" or image.getchannel("A").getextrema() == (255, 255)
+            palette = image.convert("RGB" if opaque else "RGBA").quantize(256, dither=Image.Dither.NONE)
+        palette.save(packed := io.BytesIO(), "PNG", optimize=True)
+        return min(base64.b64encode(packed.getvalue()).decode(), picture[0], key=len)
+
+    return re.sub(r"(?<=data:image/png;base64,)[^\"]+", few_colours, re.sub(r'(?<= d=")[^"]*', rounded, svg))
 
 
 def _size(svg: str) -> tuple[int, int]:

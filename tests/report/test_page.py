@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import base64
 import html.parser
+import io
 import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
+from PIL import Image
 
 from dexrepro.plan import plan_chapter
 from dexrepro.report import contents, page, words
@@ -115,3 +119,16 @@ def test_what_was_not_run_is_named_with_what_it_needs(report: Path) -> None:
         text = " ".join((report / name).read_text("utf-8").split())
         assert "<code>dexrepro run chapter=90 only=needs_more</code> (needs no_such_package: pip install" in text
         assert "only=decay</code>" not in text.partition('class="note absent">')[2].partition("</p>")[0]
+
+
+def test_a_drawing_is_shown_lighter_than_it_is_stored_and_looks_the_same() -> None:
+    pixels = np.zeros((60, 80, 4), np.uint8)
+    pixels[..., 0], pixels[..., 3] = np.arange(80) * 3, 255
+    Image.fromarray(pixels).save(stored := io.BytesIO(), "PNG", compress_level=0)
+    picture = base64.b64encode(stored.getvalue()).decode()
+    light = contents._light(f'<path d="M 1.23456 2\nL 30.00001 4 "/><image href="data:image/png;base64,{picture}"/>')
+    assert 'd="M 1.23 2 L 30.00 4"' in light
+    shown = re.search('base64,([^"]*)', light)[1]
+    assert len(shown) < len(picture) / 5
+    difference = np.asarray(Image.open(io.BytesIO(base64.b64decode(shown))).convert("RGBA")).astype(int) - pixels
+    assert np.abs(difference).max() <= 4

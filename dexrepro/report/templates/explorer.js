@@ -86,10 +86,9 @@ async function explore(place, recorded) {
     return all.length ? all[0].map((_, i) => Math.hypot(...all.map((column) => column[i] ?? NaN))) : undefined;
   }
 
-  // "m" of a channel or of one of its components; "" of a number without unit.
+  // "m" of a channel or of one of its components; "1" of a number without unit, "" where none is declared.
   function unit(channel, part) {
-    const found = units[channel].length > 1 && part !== "length" ? units[channel][parts(channel).indexOf(part)] : units[channel][0];
-    return found === "1" ? "" : found;
+    return units[channel].length > 1 && part !== "length" ? units[channel][parts(channel).indexOf(part)] : units[channel][0];
   }
 
   async function update() {
@@ -122,7 +121,7 @@ async function explore(place, recorded) {
     }
     old?.plot.destroy();
     const called = unit(channel, part);
-    node.querySelector("h3 span").textContent = `${channel} [${called || "no unit"}]`;
+    node.querySelector("h3 span").textContent = channel + (called && ` [${called === "1" ? "no unit" : called}]`);
     const tables = shown.map((name) => [data.get(name).time, values(data.get(name), channel, part, components)]);
     const kept = tables.map((table, i) => [shown[i], table]).filter(([, [, column]]) => column);
     const joined = kept.length ? uPlot.join(kept.map(([, table]) => table)) : [[0, 1]];
@@ -135,7 +134,7 @@ async function explore(place, recorded) {
       axes: [{ ...axis, label: "Time [s]", labelSize: 18, labelFont: "12px system-ui" }, { ...axis, size: 62 }],
       series: [{ label: "t", value: (_, time) => (time == null ? "–" : `${text(time)} s`) }, ...kept.map(([name]) => ({
         label: name.replaceAll("_", " "), ...look.get(name), width: 1.6, spanGaps: true, points: { show: false },
-        value: (_, number) => (number == null ? "–" : `${text(number)} ${called}`),
+        value: (_, number) => (number == null ? "–" : `${text(number)} ${called === "1" ? "" : called}`),
       }))],
       hooks: { setScale: [(self, key) => { if (key === "x" && !zoom.busy && self.status) zoomTo(self.scales.x.min, self.scales.x.max); }],
         setCursor: [(self) => { if (!told && self.cursor.left >= 0 && self.cursor.event) for (const listener of listeners) listener(self.posToVal(self.cursor.left, "x")); }] },

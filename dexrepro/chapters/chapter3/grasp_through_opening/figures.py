@@ -19,6 +19,7 @@ FIGURES = {
         "Bars of the objects lifted with chosen and with random grasps, with intervals.",
     )
 }
+UNITS = {"raised": "m"}
 TABLES = {"T3.G": "Scenes: grasp, what happened, errors"}
 FILM = Film(
     "chosen", "The simulated arm reaches through the opening, takes the object that the network chose and lifts it out "
