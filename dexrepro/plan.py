@@ -359,7 +359,7 @@ def check_own(values: Mapping[str, Any]) -> None:
     """Refuse a class of the user's that is not where a configuration says, and a law that nobody could call."""
     for key, text in leaves(values):
         name, _, last = str(text).rpartition(".")
-        if key.rpartition(".")[2] != "_target_" or name in ("", "__main__") or name.startswith("dexrepro"):
+        if key.rpartition(".")[2] != "_target_" or name in ("", "__main__"):
             continue
         try:
             module = importlib.import_module(name)
@@ -369,12 +369,11 @@ def check_own(values: Mapping[str, Any]) -> None:
             raise InputError(f"{text}: {error}; name the law with its folder, or import without the dot") from error
         except Exception:
             continue
-        file, own = str(getattr(module, "__file__", None)), Path(*name.split(".")).with_suffix(".py")
         if not hasattr(module, last):
-            if hidden := [
-                place for folder in sys.path if (place := Path(folder) / own).is_file() and file != str(place)
-            ]:
-                raise InputError(f"{text}: '{name}' is a module of Python or of a package already; rename {hidden[-1]}")
+            file, own = str(getattr(module, "__file__", None)), Path(*name.split(".")).with_suffix(".py")
+            places = {(Path(folder) / own).resolve() for folder in sys.path} - {Path(file).resolve()}
+            if hidden := [place for place in places if place.is_file()]:
+                raise InputError(f"{text}: '{name}' is a module of Python or of a package already; rename {hidden[0]}")
             names = [key for key, thing in vars(module).items() if getattr(thing, "__module__", None) == name]
             raise InputError(f"{text}: {file} has no '{last}'; {nearest(last, names)}")
         law = getattr(module, last)

@@ -184,6 +184,7 @@ OWN = """class Mine:
         ("law_i.part.Mine", ("class", "from . import part\nclass"), None),
         ("law_j.Mine", ("(self, measured): return", "(self, measured, gain=1.0): return"), None),
         ("fractions.Fraction", ("", ""), None),
+        ("dexrepro.control.joint_pd.JointP", ("", ""), "joint_pd.py has no 'JointP'; did you mean 'JointPD'"),
     ],
 )
 def test_a_law_that_is_not_there_or_cannot_be_called_gets_one_sentence(
@@ -191,8 +192,9 @@ def test_a_law_that_is_not_there_or_cannot_be_called_gets_one_sentence(
 ) -> None:
     monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path)])
     place = (tmp_path / Path(*target.split(".")[:-1])).with_suffix(".py")
-    place.parent.mkdir(exist_ok=True)
-    place.write_text(OWN.replace(*change, 1))
+    place.parent.mkdir(parents=True, exist_ok=True)
+    if not target.startswith("dexrepro."):
+        place.write_text(OWN.replace(*change, 1))
     with pytest.raises(InputError, match=sentence) if sentence else nullcontext():
         check_own({"law": {"_target_": target}})
 

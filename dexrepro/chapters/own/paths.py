@@ -17,7 +17,7 @@ from dexrepro.primitives.recorded import Format, read_path
 
 def leader_path(config: Config) -> Path:
     """The motion (3,) over time [s] that the block ``leader`` describes. Raises InputError with one sentence."""
-    given = {name: value for name, value in config.leader.items() if value is not None}
+    given = {name: value for name, value in (config.leader or {}).items() if value is not None}
     if len(given) != 1 or not given.keys() <= KINDS.keys():
         raise InputError(f"scene.leader names {', '.join(given) or 'nothing'}: give exactly one of {', '.join(KINDS)}")
     ((name, value),) = given.items()

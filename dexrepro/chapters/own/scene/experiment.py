@@ -11,6 +11,7 @@ import numpy as np
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.own.drivers import driver
 from dexrepro.chapters.own.paths import leader_path
+from dexrepro.checks import is_number
 from dexrepro.control.motion import Path
 from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Metrics, Recording
@@ -37,7 +38,7 @@ def model(arm: Arm, gravity: Sequence[float], mass_error: float, key: str = "arm
 
 
 def _vector(value: Any, length: int = 3) -> bool:
-    numbers = isinstance(value, list) and all(isinstance(item, int | float) for item in value)
+    numbers = isinstance(value, list) and all(map(is_number, value))
     return numbers and len(value) == length
 
 
@@ -48,6 +49,12 @@ def scene(config: Config, noise: np.random.Generator | None = None) -> World:
     noise: random numbers of the sensors, which are exact without.
     """
     given = {name: _blocks(config, name) for name in BLOCKS}
+    if not (config.desired_force is None or is_number(config.desired_force)):
+        raise InputError(f"scene.desired_force = {config.desired_force} is not allowed: it must be a number, or null")
+    if not isinstance(config.gravity_compensation, bool):
+        raise InputError(
+            f"scene.gravity_compensation = {config.gravity_compensation} is not allowed: it must be true or false"
+        )
     world = World(step=config.step, gravity=config.gravity, perturbation=config.perturbation)
     path = leader_path(config)
     arm = loaded(config.arm, *given["payload"])
@@ -70,8 +77,9 @@ def scene(config: Config, noise: np.random.Generator | None = None) -> World:
             raise InputError(f"scene.pushes.{number}.link = {link} is not allowed: there are {', '.join(names)}")
         force = pulse(push["force"], push["start"], push["duration"])
         world.add(Push("arm", force, link, point, f"push{number or ''}"))
-    if config.box:
-        box = dict(config.box)
+    for box in given["box"]:
+        if min(box["size"]) <= 0:
+            raise InputError(f"scene.box.size = {box['size']} is not allowed: it must be greater than 0")
         world.add_box("box", box.pop("size"), box.pop("position"), **box)
     return world
 
@@ -81,10 +89,12 @@ BLOCKS: dict[str, dict[str, int]] = {
     "wall": {"point": 3, "normal": 3, "stiffness": 1, "damping": 1},
     "pushes": {"force": 3, "start": 1, "duration": 1, "link": 0, "point": 3},
     "payload": {"mass": 1, "com": 3},
+    "box": {"size": 3, "position": 3, "mass": 1, "friction": 1},
     "sensor": {field.name: 1 for field in fields(Sensor)},
 }
 """Keys of the blocks that may be given, one or a list of them, and how many numbers each holds (0: a name)."""
 NEEDED = {"elastic": ("stiffness", "rest_length"), "wall": ("point", "normal", "stiffness"), "payload": ("mass",),
+          "box": ("size", "position"),
           "pushes": ("force", "start", "duration"), "sensor": ()}  # fmt: skip
 
 
@@ -104,7 +114,7 @@ def _blocks(config: Config, name: str) -> list[dict[str, Any]]:
             if not fits and not (key == "to" and value == "leader"):
                 kind = {0: "a name", 1: "a number", 3: "three numbers"}[length]
                 raise InputError(f"{where}.{key} = {value} is not allowed: it must be {kind}")
-    if len(blocks) > 1 and name in ("payload", "sensor"):
+    if len(blocks) > 1 and name in ("payload", "sensor", "box"):
         raise InputError(f"scene.{name} is given {len(blocks)} times; it must be one")
     return [dict(block) for block in blocks]
 
