@@ -296,8 +296,12 @@ def test_what_a_received_result_says_is_text_on_the_page(toy_result: Path, comma
     )
     changed("run.json", lambda d: d.update(revision=HTML, machine=HTML, python=HTML, differs=[HTML]))(toy_result)
     text("tables/T90.1.csv", f"case,{HTML}\n{HTML},1\n")(toy_result)
+    series = gzip.decompress((toy_result / "series/plain.csv.gz").read_bytes()).replace(b"x,", HTML.encode() + b",")
+    text("series/plain.csv.gz", gzip.compress(series))(toy_result)
     shutil.copytree(toy_result, toy_result.parents[1] / "runs/decay-0")
     assert command("report")[0] == 0
+    changed("metrics.json", lambda d: d.update({f"decay.{HTML}": 1.0}))(toy_result.parents[1] / "runs/decay-0")
+    assert command(f"diff {RESULT} results/runs/decay-0 --html results/report/diff.html")[0] == 0
     pages = [path.read_text("utf-8") for path in Path("results/report").rglob("*") if path.suffix in (".html", ".js")]
     assert any("&lt;img src=x onerror" in page for page in pages)
     assert not any(HTML in page for page in pages)

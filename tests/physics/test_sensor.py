@@ -77,3 +77,17 @@ def test_measured_tip_velocity_rests_on_measured_rates():
     measured, rates = np.array(speeds).T
     np.testing.assert_allclose(measured, rates, atol=1e-12)
     assert np.ptp(rates) > 0.05
+
+
+def test_a_sensor_is_exact_only_where_nothing_is_said_of_it_and_draws_no_noise_that_it_has_not():
+    assert Sensor().exact_force
+    assert Sensor().exact_joints
+    for rough in (Sensor(encoder_resolution=1e-3), Sensor(velocity_noise=0.1), Sensor(velocity_cutoff=20.0)):
+        assert not rough.exact_joints
+        assert rough.exact_force
+    for rough in (Sensor(force_noise=0.1), Sensor(force_delay=0.01), Sensor(force_cutoff=20.0)):
+        assert not rough.exact_force
+        assert rough.exact_joints
+    rng = np.random.default_rng(0)
+    ForceChannel(Sensor(force_cutoff=20.0), 1e-3, rng)((1.0, 2.0, 3.0))
+    assert rng.standard_normal() == np.random.default_rng(0).standard_normal()

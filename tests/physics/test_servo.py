@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from dexrepro.physics.elements import TipForce
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.servo import JointServo, PlanarServo, PoseServo
 from dexrepro.physics.world import World
@@ -21,6 +22,7 @@ def test_an_arm_follows_a_pose_and_carries_a_known_force():
         world.add_arm("arm", arm, start)
         follower = PoseServo(arm, start, dt=0.01, gain=20.0, singular=0.02, posture=0.2, bandwidth=40.0, mass_error=0.0)
         follower.reset(start)
+        world.add(TipForce("load", "arm", lambda t, x, v: (3.0, 5.0, -8.0)))
         target = lambda t: place + [0.05 * np.sin(2 * t), 0.0, 0.03 * np.sin(3 * t)]  # noqa: E731
         run = world.run(
             2.0, {"arm": lambda sense: follower.go(sense, target(sense.time), rotation)}, control_period=0.01

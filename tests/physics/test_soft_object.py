@@ -3,6 +3,7 @@ import pytest
 
 from dexrepro.physics.soft_object import Cushion, SoftObject, _across
 from dexrepro.physics.world import World
+from dexrepro.robots.arm import Pose
 from dexrepro.robots.planar import planar
 
 SOFT = dict(fast=1.0, slow=0.2, fast_time=0.05, slow_time=4.0)
@@ -29,17 +30,18 @@ def test_cushion_works_on_batches():
         )
 
 
-def held_body(friction, duration=1.0, squeeze=0.1, gravity=9.81, off=0.0, kick=None):
-    """Two arms that cannot move hold a 0.3 kg body, ``off`` the middle between them [m]; at 0.1 s it gets a kick."""
+def held_body(friction, duration=1.0, squeeze=0.1, gravity=9.81, off=0.0, kick=None, rise=0.0):
+    """Two arms that cannot move, the right one higher by ``rise`` [m], hold a 0.3 kg body, ``off`` the middle between
+    them [m]; at 0.1 s it gets a kick."""
     with World(gravity=(0, 0, -gravity)) as world:
-        for name, x in (("left", 0.7), ("right", 1.1)):
-            arm = planar((0.1,), (1e6,), base=(x - 0.1, 0.0), effort=1e9)
+        for name, x, z in (("left", 0.7, 0.0), ("right", 1.1, rise)):
+            arm = planar((0.1,), (1e6,), base=Pose((x - 0.1, 0.0, z)), effort=1e9)
             world.add_arm(name, arm, np.zeros(1))
-        ball = world.add_sphere("ball", 0.05, (0.9 + off, 0.0, 0.0), mass=0.3, collides=False, inertia=[0.01] * 3)
+        ball = world.add_sphere("ball", 0.05, (0.9 + off, 0.0, rise / 2), mass=0.3, collides=False, inertia=[0.01] * 3)
         cushions = (Cushion(100.0, 1e-3, **SOFT), Cushion(100.0, 1e-3, **SOFT))
         world.add(
-            SoftObject("grip", "ball", ("left", "right"), cushions, length=0.4 + squeeze, friction=friction,
-                       shear=500.0, shear_damping=10.0, scale=lambda t: 1.0)
+            SoftObject("grip", "ball", ("left", "right"), cushions, length=np.hypot(0.4, rise) + squeeze,
+                       friction=friction, shear=500.0, shear_damping=10.0, scale=lambda t: 1.0)
         )  # fmt: skip
         return world.run(duration, events=[(0.1, lambda: kick(ball))] if kick else ())
 
@@ -71,6 +73,14 @@ def test_a_body_off_the_middle_is_pushed_back_and_the_arms_apart():
     assert (run["left.force"][1:, 0] < 0).all()
     assert (run["right.force"][1:, 0] > 0).all()
     assert run["grip.force_right"][0] > run["grip.force_left"][0], "it is closer to the right arm"
+
+
+def test_a_slanted_object_presses_along_its_line():
+    run = held_body(friction=0.6, gravity=0.0, rise=0.3)
+    np.testing.assert_allclose(run["ball.pose"][:, :3] - (0.9, 0.0, 0.15), 0, atol=1e-6)
+    line = np.array((0.4, 0.0, 0.3)) / 0.5
+    np.testing.assert_allclose(run["right.force"][10:], run["grip.force_right"][10:, None] * line, atol=1e-3)
+    np.testing.assert_allclose(run["left.force"][10:], -run["right.force"][10:], atol=1e-3)
 
 
 @pytest.mark.parametrize("across", [1, 2])

@@ -113,6 +113,28 @@ def test_a_stretched_object_pulls_where_it_may(stretched, unilateral):
     np.testing.assert_allclose(run["arm.force"][0], (-force, 0, 0), atol=1e-9)
 
 
+def test_an_elastic_object_acts_along_its_line_in_space():
+    place, anchor, step = np.array((0.1, 0.2, 0.3)), np.array((0.4, -0.1, 0.75)), 1e-3
+    with World(step=step, gravity=FLAT) as world:
+        world.add_sphere("ball", 0.02, tuple(place), mass=0.5, collides=False)
+        world.add(Elastic("rod", ("ball", tuple(anchor)), 50.0, 1.0))
+        run = world.run(2 * step)
+    line = place - anchor
+    length = np.linalg.norm(line)
+    force = 50.0 * (1.0 - length) * line / length
+    assert run["rod.length"][0] == pytest.approx(length)
+    np.testing.assert_allclose((run["ball.pose"][1, :3] - place) / step**2 * 0.5, force, rtol=1e-4)
+
+
+def test_a_law_without_a_sensor_of_its_own_feels_the_exact_force():
+    felt = []
+    with World(gravity=FLAT) as world:
+        world.add_arm("arm", planar(*BOOK), FOLLOWER)
+        world.add(TipForce("field", "arm", lambda t, x, v: (2.0 + t, -1.0, 0.0)))
+        world.run(3e-3, {"arm": lambda sense: felt.append(sense.force) or np.zeros(3)})
+    np.testing.assert_allclose(felt, [(2.0, -1, 0), (2.001, -1, 0), (2.002, -1, 0)], atol=1e-12)
+
+
 def test_unilateral_object_never_pulls_and_stiffness_may_vary_in_time():
     with World(gravity=FLAT) as world:
         world.add_arm("arm", planar(*BOOK), LEADER)
