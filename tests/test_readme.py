@@ -113,7 +113,7 @@ def test_own_demonstrations_take_the_place_of_the_synthetic(shell: Shell, tmp_pa
     experiment = re.search(r"only=(\w+)", command)[1]
     command = f"{command} {experiment}.{QUICK[experiment].format(experiment)}"
     done = shell(command, timeout=300)
-    if refused := re.search(r"; set (planar_skill\..*)", done.stderr):
+    if refused := re.search(r"; set (planar_skill\.[^;\n]*)", done.stderr):
         done = shell(f"{command} {refused[1]}", timeout=300)
     assert done.returncode == 0, done.stderr
     folder = next(tmp_path.glob(f"results/runs/{experiment}-*"))
