@@ -55,8 +55,8 @@ Share: how many of the possible changes of a module were drawn, with a fixed see
 | module | share | tried | noticed | equivalent | score |
 | --- | --- | --- | --- | --- | --- |"""
 FRESH = """
-Changes that were drawn with another seed after the tests had been written (`--seed`), scored as found: the score above is
-of changes for whose survivors tests were written, this one is of changes that nobody had seen. Tests for the survivors
+Changes that were drawn with another seed after the tests had been written (`--seed`), scored as found: the score above
+is of changes for whose survivors tests were written, this one is of changes that nobody had seen. Tests for survivors
 of these draws, too, came later.
 
 | draw | folder | share | tried | noticed | equivalent | score |
