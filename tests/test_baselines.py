@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -29,9 +30,17 @@ def here_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def stored(toy: Path) -> Path:
-    baselines.update_chapter("90", RESULTS, accept=[], workers=1)
-    return baselines.baseline_file("90", "decay")
+def stored(toy: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The baseline of the toy chapter beside its results; made once, for all tests."""
+    kept, path = tmp_path_factory.getbasetemp() / "stored-of-the-toy", baselines.baseline_file("90", "decay")
+    if kept.exists():
+        shutil.copytree(kept / RESULTS, RESULTS)
+        shutil.copy2(kept / path.name, path)
+    else:
+        baselines.update_chapter("90", RESULTS, accept=[], workers=1)
+        shutil.copytree(RESULTS, kept / RESULTS)
+        shutil.copy2(path, kept)
+    return path
 
 
 def edit(path: Path, change) -> None:

@@ -118,9 +118,11 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     plans: list[Any] = []
     skipped: dict[str, str] = {}
     settings: dict[str, Any] = {}
+    workers = None
     for number in numbers:
         own = of_chapter(number, numbers, rest)
         settings = compose_chapter(number, own, extra_dir)
+        workers = positive_workers(settings.get("workers"))
         chapter_plans, chapter_skipped = plan_chapter(number, own, composed=settings)
         plans += chapter_plans
         skipped |= chapter_skipped
@@ -129,7 +131,7 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     quiet = bool(settings.get("quiet"))
     progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
     with progress if isinstance(progress, Bar) else nullcontext():
-        workers, force = positive_workers(settings.get("workers")), bool(settings.get("force"))
+        force = bool(settings.get("force"))
         outcome: Outcome = run_plans(plans, workers=workers, force=force, progress=progress)
     outcome.skipped = skipped
     if not quiet:

@@ -101,7 +101,7 @@ CLAIMS = (
         beside=on_real_letters(
             "C5.06",
             f", the error being {{{REAL}.n20.idmp60.ratio.median:.2f}} of the DMP+'s on the median one; the synthetic "
-            f"hand flatters. With less smoothing (20 Hz) it holds on {{real_handwriting.rough.holds.C5.06:.0%}}",
+            f"hand flatters. With less smoothing it holds on {{real_handwriting.rough.holds.C5.06:.0%}} of them",
         ),
         note="{.default.n20.idmp60.ratio:.2f} of it with 60 added features, {.default.n20.idmp30.ratio:.2f} with 30, "
         "{.default.n20.dmp_equal.ratio:.2f} for a plain DMP with as many weights as the largest IDMP. The tremor that "
