@@ -120,7 +120,7 @@ def unit(channel: str, units: Mapping[str, str]) -> str:
     a number at its end ("force" for "force_0", "force_1").
     """
     body, _, quantity = channel.rpartition(".")
-    names = (channel, body, re.sub(r"_?\d+$", "", channel))
+    names = (channel, body, *(re.sub(r"_?\d+$", "", name) for name in (channel, body)))
     return next((units[name] for name in names if name in units), UNITS.get(quantity, "") if body else "")
 
 

@@ -52,8 +52,8 @@ def test_what_is_no_series_in_time_is_left_out(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("channel", "unit"),
-    [("leader.position", "rad"), ("box.pose", "m, m, m, 1, 1, 1, 1"), ("error", "mm"), ("push.x", "N"),
-     ("force_2", "kN"), ("groups5", "cm"), ("tip", ""), ("position", ""), ("hand.force", "lbf")],
+    [("leader.position", "rad"), ("box.pose", "m, m, m, 1, 1, 1, 1"), ("error", "mm"), ("push2.x", "N"),
+     ("push.x", "N"), ("force_2", "kN"), ("groups5", "cm"), ("tip", ""), ("position", ""), ("hand.force", "lbf")],
 )  # fmt: skip
 def test_units_are_declared_or_those_of_the_world(channel: str, unit: str) -> None:
     declared = {"error": "mm", "push": "N", "force": "kN", "groups": "cm", "hand.force": "lbf"}

@@ -13,6 +13,7 @@ from .experiment import distance
 FIGURES = {
     "own.A": Figure("Path of the end point, its distance from where it should be, and the force along the line.")
 }
+UNITS = {"reference": "m", "leader.pose": "m", "force_along": "N", "wall": "N", "push": "N"}
 TABLES = {"own.T": "Tracking, force and torque of every case"}
 
 
