@@ -213,9 +213,9 @@ def serve_tasks(connection: Connection) -> None:
     while True:
         try:
             received = connection.recv_bytes()
+            connection.send(("begun", None))
         except (EOFError, OSError):
             os._exit(0)
-        connection.send(("begun", None))
         try:
             function, arguments = ForkingPickler.loads(received)
             answer = ForkingPickler.dumps(("done", function(*arguments)))
@@ -226,7 +226,10 @@ def serve_tasks(connection: Connection) -> None:
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(OSError, ValueError, AttributeError):
                 stream.flush()
-        connection.send_bytes(answer)
+        try:
+            connection.send_bytes(answer)
+        except OSError:  # the command has ended meanwhile
+            os._exit(0)
 
 
 def begin_worker(connection: Connection) -> None:
