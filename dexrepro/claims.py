@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 Metrics = Mapping[str, float | int | None]
@@ -38,6 +39,11 @@ class Predicate:
         return self.text
 
 
+TIE = 0.01
+"""Two numbers of runs that are said to be in order, and by no factor, tie where they differ by less than this share of
+the larger; a tie does not hold, in a claim, its control, its printed form and its readings alike."""
+
+
 def _relative_gap(smaller: float, larger: float) -> float:
     scale = max(abs(smaller), abs(larger))
     return (larger - smaller) / scale if scale > 0 else 0.0
@@ -52,10 +58,12 @@ def _operand(value: str | float, factor: float) -> str:
 def less(a: str, b: str | float, factor: float = 1.0) -> Predicate:
     """a < factor * b, where b is a metric or a number. Margin (factor b - a) / max(|a|, |factor b|).
 
-    Against a bound of 0 the margin is 1 or -1, whatever a: it then tells the verdict alone.
+    Of two metrics without a factor the margin is ``TIE`` less. Against a bound of 0 it is 1 or -1, whatever a: it then
+    tells the verdict alone.
     """
     if isinstance(b, str):
-        return Predicate(f"{a} < {_operand(b, factor)}", (a, b), lambda v: _relative_gap(v[0], factor * v[1]))
+        tie = TIE if factor == 1 else 0.0
+        return Predicate(f"{a} < {_operand(b, factor)}", (a, b), lambda v: _relative_gap(v[0], factor * v[1]) - tie)
     bound = factor * b
     return Predicate(f"{a} < {bound:g}", (a,), lambda v: _relative_gap(v[0], bound))
 
@@ -63,7 +71,8 @@ def less(a: str, b: str | float, factor: float = 1.0) -> Predicate:
 def greater(a: str, b: str | float, factor: float = 1.0) -> Predicate:
     """a > factor * b, where b is a metric or a number. Margin (a - factor b) / max(|a|, |factor b|); see ``less``."""
     if isinstance(b, str):
-        return Predicate(f"{a} > {_operand(b, factor)}", (a, b), lambda v: _relative_gap(factor * v[1], v[0]))
+        tie = TIE if factor == 1 else 0.0
+        return Predicate(f"{a} > {_operand(b, factor)}", (a, b), lambda v: _relative_gap(factor * v[1], v[0]) - tie)
     bound = factor * b
     return Predicate(f"{a} > {bound:g}", (a,), lambda v: _relative_gap(bound, v[0]))
 
@@ -76,8 +85,9 @@ def within(a: str, low: float, high: float) -> Predicate:
 
 
 def ordered(*names: str) -> Predicate:
-    """The metrics increase in the order given. Margin: the smallest of the neighbours' margins."""
-    return Predicate(" < ".join(names), names, lambda v: min(_relative_gap(a, b) for a, b in itertools.pairwise(v)))
+    """The metrics increase in the order given, without a ``TIE``. Margin: the smallest of the neighbours' margins."""
+    text = " < ".join(names)
+    return Predicate(text, names, lambda v: min(_relative_gap(a, b) - TIE for a, b in itertools.pairwise(v)))
 
 
 def every(*predicates: Predicate) -> Predicate:
@@ -163,7 +173,8 @@ class Claim:
         all agree with the predicate the verdict is "reading-dependent". searched: over which choices of ours a failure
         was searched before it stands.
     by_construction: the generator that has the effect built in. not_testable: why nothing can be measured.
-    note: what a reader must know beside the verdict; ``{experiment.case.metric:.3g}`` in it is filled from the run.
+    note: what a reader must know beside the verdict; ``{experiment.case.metric:.3g}`` in it is filled from the run, a
+        parameter ``{experiment.key}`` or ``{experiment.cases.case.key}`` from its configuration.
     beside: what another experiment of the chapter shows of it, filled likewise where that was run, else left out.
     """
 
@@ -204,8 +215,8 @@ class Claim:
         """Name of the experiment whose metrics the claim is about ("" for one that is not testable)."""
         return self.metrics[0].partition(".")[0] if self.metrics else ""
 
-    def evaluate(self, metrics: Metrics) -> Evaluation:
-        """Verdict, margins and the values they rest on."""
+    def evaluate(self, metrics: Metrics, settings: Mapping[str, Any] = MappingProxyType({})) -> Evaluation:
+        """Verdict, margins and the values they rest on; ``settings`` are the parameters that the note may name."""
 
         def of(predicate: Predicate | None) -> float | None:
             return predicate.margin(metrics) if predicate else None
@@ -234,7 +245,7 @@ class Claim:
             searched=self.searched,
             by_construction=self.by_construction,
             reason=self.not_testable,
-            note=filled(self.note, metrics),
+            note=filled(self.note, {**settings, **metrics}),
         )
 
     def _verdict(

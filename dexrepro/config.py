@@ -351,6 +351,12 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
     return result
 
 
+def settings(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
+    """Every parameter of an experiment and of its cases by its full name, as texts name them."""
+    block = {**resolved_block(composed, experiment), "cases": experiment_cases(composed, experiment)}
+    return dict(leaves({experiment: block}))
+
+
 def resolved_block(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
     """The experiment's own block, resolved, without its cases."""
     block = {key: value for key, value in composed[experiment].items() if key != "cases"}

@@ -93,7 +93,6 @@ def plan_chapter(
     *,
     composed: Mapping[str, Any] | None = None,
     perturbation: float = 0.0,
-    extra_dir: str | None = None,
     write: bool = True,
 ) -> tuple[list[Plan], dict[str, str]]:
     """Plans of the experiments that the configuration selects, and those skipped with the reason.
@@ -103,7 +102,7 @@ def plan_chapter(
     _code_digest.cache_clear()
     if chapter not in (*chapters.numbers(), chapters.OWN):
         raise InputError(f"unknown chapter '{chapter}'; chapters: {', '.join(chapters.numbers())}")
-    config = composed if composed is not None else compose_chapter(chapter, overrides, extra_dir)
+    config = composed if composed is not None else compose_chapter(chapter, overrides)
     shipped = compose_chapter(chapter)
     if config["gui"]:
         _require_display()

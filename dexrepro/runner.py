@@ -21,7 +21,7 @@ from typing import Any
 from dexrepro import __version__, chapters
 from dexrepro.case import live
 from dexrepro.case import run as run_case
-from dexrepro.checks import differences
+from dexrepro.checks import differences, leaves
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
 from dexrepro.plan import PARTIAL, Job, Plan, import_anew, outdated, own_digest, presentation
@@ -256,7 +256,9 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
     recordings, nested, config, differs = recorded(experiment, folder)
     flat_metrics = flat(experiment.name, nested)
     write_json(folder / "metrics.json", flat_metrics)
-    claims = [claim.evaluate(flat_metrics).as_dict() for claim in chapters.load(chapter).claims_of(experiment.name)]
+    settings = dict(leaves({experiment.name: config}))
+    about = chapters.load(chapter).claims_of(experiment.name)
+    claims = [claim.evaluate(flat_metrics, settings).as_dict() for claim in about]
     write_json(folder / "claims.json", claims)
     for name in ("tables", "figures"):
         shutil.rmtree(folder / name, ignore_errors=True)

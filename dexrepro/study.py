@@ -313,25 +313,31 @@ def run(
     if samples is not None:
         _refuse_fewer(chapter, experiment, samples, results, target)
     deadline = time.time() + 3600 * hours if hours else float("inf")
-    claims = chapters.load(chapter).claims_of(experiment)
-    names, undecided = list(draw(chapter, experiment, 0)[1]["cases"]), claims
+    claims = undecided = chapters.load(chapter).claims_of(experiment)
+    names, failed = list(draw(chapter, experiment, 0)[1]["cases"]), []
+    kept = _kept(chapter, experiment, results, only=only)
     with Pool(workers) as pool:
-        for look in [samples] if samples is not None else LOOKS:
-            kept = _kept(chapter, experiment, results, only=only)
+        for look in (0, *([samples] if samples is not None else LOOKS)):  # first at what there is
             wanted = tuple(case for case in _cases_of(undecided, names) if not only or case in only)
-            for index in range(look):
-                if not {*wanted} <= kept.get(index, {"cases": {}})["cases"].keys():
-                    pool.add(index, contribute, chapter, experiment, index, results, deadline, engine, wanted)
+            lacking = [i for i in range(look) if i not in kept or not {*wanted} <= kept[i]["cases"].keys()]
+            if not lacking and (look or not kept):
+                continue
+            for index in lacking:
+                pool.add(index, contribute, chapter, experiment, index, results, deadline, engine, wanted)
             failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
             with locked(_folder(results)):  # who ends last sees every sample
-                entries = list(_kept(chapter, experiment, results, only=only).values())
-                found = summary(chapter, experiment, entries)
-                if len(entries) >= _held(target):  # fewer where the hours are over
-                    _write_lines(_lines(target), entries)
+                kept = _kept(chapter, experiment, results, only=only) if lacking else kept
+                found = summary(chapter, experiment, list(kept.values()))
+                if len(kept) >= _held(target):  # fewer where the hours are over
+                    _write_lines(_lines(target), list(kept.values()))
                     write_json(target, found)
-            undecided = [c for c in claims if found["claims"].get(c.id, {}).get("word") == OPEN]
-            if failed or time.time() > deadline or not undecided:
+            if failed or time.time() > deadline:
                 break
+            if samples is None:  # what has no number to judge by, after draws of it, has none after more
+                unknown = {"word": OPEN if look == 0 else ""}
+                undecided = [c for c in claims if found["claims"].get(c.id, unknown)["word"] == OPEN]
+                if not undecided:
+                    break
     if failed:
         index, reason = failed[0]
         more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""

@@ -119,12 +119,25 @@ def test_conda_is_asked_where_uv_cannot_fetch(machine: Machine) -> None:
     assert calls[2] == "3.11 -m pip install --quiet --disable-pip-version-check --no-deps -e ."
 
 
+@pytest.mark.parametrize("version", ["3.12.3", "3.13.5", "3.14.0"])
+def test_where_nothing_can_be_fetched_a_newer_python_simulates_with_mujoco(machine: Machine, version: str) -> None:
+    name = machine.path / f"python{version[:4]}"
+    machine.python(version, name, pip='case "$*" in *uv==*) exit 1 ;; esac')
+    (machine.path / "python3").symlink_to(name)
+    status, said, calls = machine.set_up()
+    assert status == 0
+    assert said.startswith(f"dexrepro: Python {version} is used, for which PyBullet has no wheel: MuJoCo simulates")
+    assert not any("lock.txt" in line for line in calls), "PyBullet is pinned there"
+    assert "--only-binary :all:" in calls[-1]
+    assert calls[-1].endswith("-c .venv/pins.txt -e .[dev]")
+
+
 def test_where_nothing_can_be_fetched_two_sentences_say_what_to_install(machine: Machine) -> None:
-    machine.python("3.13", pip="exit 1")
+    machine.python("3.10", pip="exit 1")
     status, said, calls = machine.set_up()
     assert status == 1
     assert said.splitlines()[0] == "dexrepro: no Python 3.11 was found, and neither uv nor conda could fetch one."
-    assert said.splitlines()[1].startswith("dexrepro: Install Python 3.11 ")
+    assert said.splitlines()[1].startswith("dexrepro: Install Python 3.11.5 or newer ")
     assert len(said.splitlines()) == 2
     assert not any("lock.txt" in line for line in calls)
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dexrepro.claims import Claim, Erratum, about, every, greater, less, ordered, within
+from dexrepro.claims import TIE, Claim, Erratum, about, every, greater, less, ordered, within
 from dexrepro.experiment import Config, changed
 
 numbers = st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6)
@@ -15,8 +15,10 @@ numbers = st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6)
 @given(numbers, numbers)
 def test_margin_is_positive_exactly_when_the_statement_holds(a: float, b: float) -> None:
     values = {"a": a, "b": b}
-    assert (less("a", "b").margin(values) > 0) == (a < b)
-    assert (greater("a", "b").margin(values) > 0) == (a > b)
+    tied = abs(a - b) <= TIE * max(abs(a), abs(b))
+    assert (less("a", "b").margin(values) > 0) == (a < b and not tied)
+    assert (greater("a", "b").margin(values) > 0) == (a > b and not tied)
+    assert (less("a", "b", factor=3).margin(values) > 0) == (a < 3 * b)
     assert (less("a", 2.0, factor=3).margin(values) > 0) == (a < 6)
     assert (within("a", -10, 10).margin(values) >= 0) == (-10 <= a <= 10)
 
@@ -30,8 +32,10 @@ def test_a_conjunction_has_its_weakest_margin(a: float, b: float, c: float) -> N
 
 
 def test_margins_are_relative_gaps() -> None:
-    assert less("a", "b").margin({"a": 1.0, "b": 4.0}) == pytest.approx(0.75)
-    assert less("a", "b").margin({"a": 0.0, "b": 0.0}) == 0
+    assert less("a", "b", factor=2).margin({"a": 1.0, "b": 2.0}) == pytest.approx(0.75)
+    assert less("a", "b").margin({"a": 1.0, "b": 4.0}) == pytest.approx(0.75 - TIE)
+    assert less("a", "b").margin({"a": 0.0, "b": 0.0}) == -TIE
+    assert less("a", 4.0).margin({"a": 1.0}) == pytest.approx(0.75)
     assert within("a", 0, 10).margin({"a": 2.0}) == pytest.approx(0.2)
     with pytest.raises(ValueError, match="not below"):
         within("a", 1, 1)

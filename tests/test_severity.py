@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 
 import pytest
 
 from dexrepro import baselines, chapters, study
 from dexrepro.checks import leaves
-from dexrepro.claims import BY_CONSTRUCTION, NOT_EVALUATED, Claim, filled, less, robustness
+from dexrepro.claims import BY_CONSTRUCTION, NOT_EVALUATED, Claim, Predicate, filled, less, robustness
 from dexrepro.config import compose_chapter, resolved_block
 from dexrepro.report import verdicts
 
@@ -46,6 +47,63 @@ def test_stored_verdicts_follow_from_stored_metrics(number: str) -> None:
     assert {key: verdict for key, verdict in found.items() if verdict != NOT_EVALUATED and key in stored} == {
         key: verdict for key, verdict in stored.items() if found.get(key, NOT_EVALUATED) != NOT_EVALUATED
     }
+
+
+STOPPED = "a run is stopped at its bound, so that 1 says that it was met and is no measured number"
+TURNING = {
+    "C1.32": "a stiff object lets go and is caught again, which multiplies the smallest change",
+    "C3.10b": "a free tool axis meets a joint limit in one of two directions, with a perturbation or without",
+    "C3.14b": "limited torques settle after 3 s or not within the run, and the claim fails either way",
+    "C3.19": "trained in single precision; by construction",
+    "C4.03": "its rivals chatter, and a tolerance is ten times the change seen, at which it does not turn",
+    "C4.13": "the control ties in both errors; all three numbers at the ends of their tolerances would pass it",
+    "C4.28": "the rival's error is reproducible to 3 %, within which the reading ties",
+    "C5.40": "a share of shapes equals its bound, which is not more; a count is exact",
+    "C6.38": STOPPED,
+    "C8.01": STOPPED,
+    "C8.12": STOPPED,
+    "C8.16": STOPPED,
+    "C8.20": STOPPED,
+    "C8.21": STOPPED,
+}
+"""Claims of which a predicate turns within the stored tolerances of its numbers, and why that is no doubt of it."""
+
+
+def outcomes(predicate: Predicate, entries: dict[str, dict[str, float]]) -> set[bool]:
+    """Whether it holds where its numbers are, moved by their tolerances in pairs, and all moved where it gains most.
+
+    A part of a predicate compares two numbers at most, so that pairs find whatever makes one fail. A tolerance of the
+    smallest size about 0 is no change that was seen.
+    """
+    ends = {}
+    for name in dict.fromkeys(predicate.metrics):
+        value, size = entries[name]["value"], entries[name]["atol"]
+        size = 0.0 if value is None else entries[name]["rtol"] * abs(value) + size * (size > baselines.ATOL)
+        ends[name] = (value - size, value, value + size) if size else (value,)
+    best = {name: entries[name]["value"] for name in ends}
+    found = {predicate.margin(best) > 0}
+    moved = [name for name in ends if len(ends[name]) > 1]
+    pairs = [*itertools.combinations(moved, 2)] or [(name, name) for name in moved]
+    for one, two in pairs:
+        places = [best | {one: a, two: b} for a, b in itertools.product(ends[one], ends[two])]
+        found |= {predicate.margin(place) > 0 for place in places}
+    if found == {False}:
+        for one, two in pairs * 2:
+            places = [best | {one: a, two: b} for a, b in itertools.product(ends[one], ends[two])]
+            best = max(places, key=predicate.margin)
+        found.add(predicate.margin(best) > 0)
+    return found
+
+
+def test_no_verdict_turns_within_the_tolerance_of_its_numbers_but_those_listed() -> None:
+    turning = set()
+    for number in chapters.numbers():
+        stored = baselines.stored(number).values()
+        entries = {name: entry for baseline in stored for name, entry in baseline.metrics.items()}
+        for claim in chapters.load(number).claims:
+            if any(len(outcomes(predicate, entries)) > 1 for predicate in claim.predicates):
+                turning.add(claim.id)
+    assert turning == TURNING.keys()
 
 
 def test_verdicts_of_every_kind() -> None:

@@ -140,3 +140,26 @@ class KnownMovement:
         before = self.velocity
         self.position, self.velocity = self._movement()
         self.acceleration = (self.velocity - before) / self._dt
+
+
+class ToldMovement:
+    """Stands in for an estimation in a law that is told of the object what the estimation starts from, and no more.
+
+    The rest position believed is the one told plus the displacement that ``law`` makes of the force error.
+    law: a law of the force error, such as :class:`~dexrepro.control.passive_impedance.PassiveImpedance`.
+    position: a_0 [m]. stiffness: k_o as told [N/m].
+    """
+
+    velocity = acceleration = 0.0
+
+    def __init__(self, *, law: HoldingLaw, position: Real, stiffness: float) -> None:
+        self.law, self._told, self.stiffness = law, position, stiffness
+        self.reset()
+
+    def reset(self) -> None:
+        """The object rests where told."""
+        self.position = self._told
+        self.law.reset(Measured(0.0, 0.0, 0.0, 0.0))
+
+    def __call__(self, position: Real, force: Real) -> None:
+        self.position = self._told + self.law(Measured(0.0, 0.0, 0.0, force))

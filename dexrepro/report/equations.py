@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import yaml
 from latex2mathml import converter
+from markupsafe import escape
 
 from dexrepro import chapters
 from dexrepro.config import config_files
@@ -77,9 +78,12 @@ def printed() -> dict[str, tuple[str, str]]:
 def typeset(latex: str) -> str:
     """An equation as MathML, "" of none. Raises InputError where it is no LaTeX."""
     try:
-        return converter.convert(latex.replace("{aligned}", "{align*}"), display="block") if latex else ""
+        made = converter.convert(latex.replace("{aligned}", "{align*}"), display="block") if latex else ""
     except Exception as error:
         raise InputError(f"the equation {latex[:80]!r} cannot be typeset ({type(error).__name__})") from error
+    made = re.sub("&#x0*([0-9A-F]{2,});", lambda code: escape(chr(int(code[1], 16))), made)
+    made = made.replace(' xmlns="http://www.w3.org/1998/Math/MathML"', "")  # within a page it goes without saying
+    return re.sub(r"<mrow>(<(m[ion])[^>]*>[^<]*</\2>)</mrow>", r"\1", made)
 
 
 def numbers(text: str) -> list[str]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
@@ -27,9 +28,9 @@ from dexrepro.report.damage import check_series
 LONGEST = 4000  # samples of a case; of a longer one every k-th is shown
 SHORTEST = 10
 FRAMES = 240  # instants of a scene
-UNITS = {  # of the channels that every arm and object of the world records
-    "time": "s", "position": "rad", "velocity": "rad/s", "torque": "N m", "tip": "m", "force": "N", "sensed_force": "N",
-    "length": "m",
+UNITS = {  # of the channels that arms, bodies and objects of the world record as "<name>.<quantity>"
+    "position": "rad", "velocity": "rad/s", "torque": "N m", "tip": "m", "force": "N", "sensed_force": "N",
+    "length": "m", "slip": "m", "pose": "m, m, m, 1, 1, 1, 1",
 }  # fmt: skip
 ARMS = ("arm", "leader", "follower", "left", "right", "object")
 
@@ -52,7 +53,7 @@ def write(
     if not found:
         return None
     names = list(dict.fromkeys(_name(column) for case in found.values() for column in case["channels"]))[1:]
-    channels = [{"name": name, "unit": (units or {}).get(name) or unit(name, film)} for name in names]
+    channels = [{"name": name, "unit": unit(name, units or {})} for name in names]
     return {"name": target.name, "cases": found, "channels": channels, "first": _first(names, list(found), film)}
 
 
@@ -101,12 +102,15 @@ def _motion(place: Path, experiment: Experiment) -> tuple[str, Array, list[Solid
     return case, times, seen, poses
 
 
-def unit(channel: str, film: Film | None = None) -> str:
-    """Of the world's own channels, and of the one whose film names it; else ""."""
+def unit(channel: str, units: Mapping[str, str]) -> str:
+    """A channel's unit, "1" of a number without, "m, N" of components: as declared, or the world's own; else "".
+
+    units: declared, by a channel's name, by what stands before its dot ("push" for "push.x"), or by its name without
+    a number at its end ("force" for "force_0", "force_1").
+    """
     body, _, quantity = channel.rpartition(".")
-    if film and channel == film.channel and film.scale == 1 and "[" in film.label:
-        return film.label.rpartition("[")[2].rstrip("]")
-    return UNITS.get(quantity, "") if body in ARMS or channel == "time" else ""
+    names = (channel, body, re.sub(r"_?\d+$", "", channel))
+    return next((units[name] for name in names if name in units), UNITS.get(quantity, "") if body else "")
 
 
 def _first(names: list[str], cases: list[str], film: Film | None) -> dict[str, list[str]]:

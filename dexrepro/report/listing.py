@@ -7,7 +7,7 @@ from typing import Any
 
 from dexrepro import baselines, chapters
 from dexrepro.claims import filled
-from dexrepro.config import compose_chapter, config_files, experiment_cases
+from dexrepro.config import compose_chapter, config_files, experiment_cases, settings
 from dexrepro.kept import kept
 from dexrepro.study import robustness_of
 
@@ -39,6 +39,8 @@ def _listed(number: str) -> dict[str, Any]:
     metrics = {
         name: entry["value"] for item in baselines.stored(number).values() for name, entry in item.metrics.items()
     }
+    for experiment in chapter.experiments:
+        metrics |= settings(composed, experiment.name)
     return {
         "chapter": number,
         "title": chapter.title,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import shutil
 import textwrap
@@ -73,7 +74,8 @@ class _Report:
         }  # fmt: skip
         self._page("index", here="index", **common, strips=[_strip(chapter) for chapter in book])
         for chapter in book:
-            self._page(f"chapter{chapter['number']}", "chapter", here=chapter["number"], chapter=chapter, **common)
+            for name in ("chapter", "parameters"):
+                self._page(f"{name}{chapter['number']}", name, here=chapter["number"], chapter=chapter, **common)
         for run in runs:
             self._page_of_run(run, common)
         self._page("claims", here="claims", **common)
@@ -87,6 +89,8 @@ class _Report:
         self._page("verdicts", here="verdicts", **told, **common)
         self._page("symbols", here="symbols", **common)
         self._page("equations", here="equations", equations=index, **common)
+        for number, rows in itertools.groupby(index, lambda row: row["chapter"]):
+            self._page(f"equations{number}", "equations", here="", number=number, equations=list(rows), **common)
         self._write_sources(common["provenance"])
         self._write_assets(book)
 
@@ -131,7 +135,8 @@ class _Report:
         for chapter in book:
             for item in (row for experiment in chapter["experiments"] for row in experiment["parameters"]):
                 text = f"{item['key']} = {textwrap.shorten(str(item['value']), 40)}"
-                self._searchable("parameter", text, f"chapter{chapter['number']}.html#key-{item['key']}", item["kind"])
+                to = f"parameters{chapter['number']}.html#key-{item['key']}"
+                self._searchable("parameter", text, to, item["kind"])
 
     def _index_experiment(self, experiment: Mapping[str, Any], page: str) -> None:
         self._searchable("experiment", experiment["summary"], f"{page}#{experiment['name']}", experiment["name"])
@@ -158,7 +163,8 @@ class _Report:
         mentions = [mention for mention in equations.index() if not printed or mention.equation in printed]
         for name in sorted({*printed, *(mention.equation for mention in mentions)}, key=equations.place):
             section, latex = printed.get(name, ("", ""))
-            rows[name] = {"equation": name, "section": section, "typeset": equations.typeset(latex)}
+            rows[name] = {"equation": name, "chapter": equations.place(name)[0], "section": section}
+            rows[name]["typeset"] = equations.typeset(latex)
             rows[name] |= {"code": [], "parameter": [], "named": {}}
         for mention in mentions:
             link = self.code.link(mention.path, mention.line)
@@ -174,7 +180,7 @@ class _Report:
             names = ", ".join(dict.fromkeys(m["name"] for m in [*row["code"], *row["named"]])) or (
                 "parameters" if row["parameter"] else f"not used, Sect. {row['section']}"
             )
-            to = f"equations.html#eq-{row['equation']}"
+            to = f"equations{row['chapter']}.html#eq-{row['equation']}"
             self._searchable("equation", f"Eq. ({row['equation']}): {names}", to, f"{row['equation']} equation")
         return list(rows.values())
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from dexrepro import baselines, chapters, study
 from dexrepro.claims import Claim, Erratum
-from dexrepro.config import compose_chapter, experiment_cases, resolved_block
+from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
 from dexrepro.errors import InputError, nearest
 from dexrepro.plan import matches
 from dexrepro.provenance import provenance
@@ -59,7 +59,7 @@ def _about_claim(number: str, claim: Claim, results: Path) -> Iterator[str]:
     name, chapter, composed = claim.experiment, chapters.load(number), compose_chapter(number)
     where, metrics = _metrics(number, name, results) if name else ("", {})
     row = next((s["claims"].get(claim.id) for s in study.stored(results) if s["experiment"] == name), None)
-    shown: dict[str, Any] = claim.evaluate(metrics).as_dict()
+    shown: dict[str, Any] = claim.evaluate(metrics, settings(composed, name) if name else {}).as_dict()
     shown |= {"study": row, "robustness": verdicts.robustness(row)}
     place = ", ".join(filter(None, [f"Fig. {claim.figure}" if claim.figure else "", _section(claim.where), name]))
     yield f"{claim.id}  {shown['verdict']}{_margin(shown['margin'])}  ({place or 'no experiment'})"

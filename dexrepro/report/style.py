@@ -6,7 +6,7 @@ import contextlib
 import math
 import re
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -127,6 +127,58 @@ def at_least(value: float, digits: int) -> str:
 def panel(axes: Axes, letter: str, text: str = "") -> None:
     """Name a panel: (a), (b), ..."""
     axes.set_title(f"({letter}) {text}".rstrip())
+
+
+def panels(axes: Iterable[Axes], *texts: str) -> None:
+    """Name panels in the order of reading: (a), (b), ..., each with its text."""
+    for letter, axis, text in zip("abcdefgh", axes, texts):
+        panel(axis, letter, text)
+
+
+def edges(grid: Any, x: str, y: str | Iterable[str]) -> None:
+    """Label small multiples at the edges: ``x`` below the last row, ``y`` left of the rows (one for all, or each)."""
+    grid = np.atleast_2d(grid)
+    for axes in grid[-1]:
+        axes.set_xlabel(x)
+    for axes, text in zip(grid[:, 0], [y] * len(grid) if isinstance(y, str) else y):
+        axes.set_ylabel(text)
+
+
+def curves(
+    axes: Axes, recordings: Mapping[str, Any], cases: Mapping[str, tuple[str, str]], channel: str, scale: float = 1.0
+) -> None:
+    """A channel over time of every case that was run; cases: the name of each in the legend, and its line."""
+    for case, (label, line) in cases.items():
+        if case in recordings:
+            axes.plot(recordings[case].time, scale * recordings[case][channel], label=label, **LINES[line])
+
+
+def twin(axes: Axes, label: str = "", color: str = "black") -> Axes:
+    """A second scale on the right."""
+    other = axes.twinx()
+    other.spines["right"].set_visible(True)
+    other.set_ylabel(label, color=color)
+    return other
+
+
+def level(axes: Axes, value: float, word: str, va: str = "top", x: float = 0.98) -> None:
+    """A dashed line at a value, named at the right end."""
+    axes.axhline(value, **LINES["reference"])
+    axes.annotate(word, (x, value), xycoords=("axes fraction", "data"), ha="right", va=va, fontsize=8)
+
+
+def drawn(
+    figures: Mapping[str, tuple[Callable[..., Figure], Iterable[str]]], recordings: Mapping[str, Any], *others: Any
+) -> dict[str, Figure]:
+    """Of figures, by their number the function that draws each and the cases it shows, those whose cases were run."""
+    return {name: draw(recordings, *others) for name, (draw, cases) in figures.items() if set(cases) <= set(recordings)}
+
+
+def photos(axes: Iterable[Axes], images: Mapping[Any, Any], texts: Mapping[Any, str], **options: Any) -> None:
+    """Pictures in the places of axes without the margin they share: those that ``texts`` names, with these titles."""
+    shown = trimmed(images)
+    for axis, (name, text) in zip(axes, texts.items()):
+        photo(axis, shown[name], text, **options)
 
 
 def photo(axes: Axes, image: Any, text: str = "", **options: Any) -> None:

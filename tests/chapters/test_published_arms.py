@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pybullet_data
 import pytest
 
 from dexrepro.case import generator, live
@@ -16,7 +15,7 @@ from dexrepro.chapters.own.scene import experiment as scene
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.errors import InputError
 
-DATA = Path(pybullet_data.getDataPath())
+DATA = Path(pytest.importorskip("pybullet_data").getDataPath())
 AIRO = importlib.util.find_spec("airo_models")
 UR5E = Path(str(AIRO.origin)).parent / "arms/ur5e/ur5e.urdf" if AIRO else None
 ARMS = [

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import pybullet as bullet
 import pytest
 
-from dexrepro.physics.engines.pybullet import connect, load_arm
 from dexrepro.robots.arm import Arm
 from dexrepro.robots.baxter import baxter
+
+bullet = pytest.importorskip("pybullet")
+
+from dexrepro.physics.engines.pybullet import connect, load_arm  # noqa: E402
 
 
 def joint_places(arm: Arm) -> list[tuple[object, ...]]:

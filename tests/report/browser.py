@@ -11,6 +11,7 @@ import tarfile
 import time
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote, urlsplit
 
 PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 AXE = "4.14.1"
@@ -85,6 +86,12 @@ class Browser:
                     return
             time.sleep(0.05)
         raise AssertionError(f"never came true: {condition}")
+
+    def weight(self) -> float:
+        """What has been loaded from disk since ``open`` [kB]: the page and what it loads before anything is opened."""
+        self.js("new Promise((done) => setTimeout(done, 400))")  # pictures that are nearly in view
+        files = {url for url in self.loaded.values() if url.startswith("file:")}
+        return sum(Path(unquote(urlsplit(url).path)).stat().st_size for url in files) / 1000
 
     def js(self, expression: str) -> Any:
         result = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)

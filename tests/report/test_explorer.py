@@ -1,4 +1,4 @@
-"""Recorded series as scripts: exact, thinned only where they are long, and with units only where these are known."""
+"""Recorded series as scripts: exact, thinned only where they are long, and with their units."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 from dexrepro import chapters
 from dexrepro.case import live
 from dexrepro.config import compose_chapter, experiment_cases
-from dexrepro.experiment import Film, Recording
+from dexrepro.experiment import Recording
 from dexrepro.recordings import save_recording
 from dexrepro.report import explorer
 
@@ -50,12 +50,14 @@ def test_what_is_no_series_in_time_is_left_out(tmp_path: Path) -> None:
     assert explorer.write(tmp_path, tmp_path, ["plain"], None) is None
 
 
-def test_units_are_those_of_the_world_or_of_the_film() -> None:
-    film = Film("plain", "", None, "object.force", "Holding force [N]")
-    assert explorer.unit("leader.position") == "rad"
-    assert explorer.unit("error") == ""
-    assert explorer.unit("error", Film("plain", "", None, "error", "Error [mm]", scale=1e3)) == "", "scaled in the film"
-    assert explorer.unit("object.force", film) == "N"
+@pytest.mark.parametrize(
+    ("channel", "unit"),
+    [("leader.position", "rad"), ("box.pose", "m, m, m, 1, 1, 1, 1"), ("error", "mm"), ("push.x", "N"),
+     ("force_2", "kN"), ("groups5", "cm"), ("tip", ""), ("position", ""), ("hand.force", "lbf")],
+)  # fmt: skip
+def test_units_are_declared_or_those_of_the_world(channel: str, unit: str) -> None:
+    declared = {"error": "mm", "push": "N", "force": "kN", "groups": "cm", "hand.force": "lbf"}
+    assert explorer.unit(channel, declared) == unit
 
 
 @pytest.mark.parametrize("name", ["skill_reuse", "barrier_and_switch"])

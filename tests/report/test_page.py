@@ -74,9 +74,9 @@ def test_what_another_experiment_shows_stands_beside_a_claim_where_it_was_run(re
 
 
 def test_a_symbol_leads_to_its_parameter_and_back(report: Path) -> None:
-    chapter, index = ((report / name).read_text() for name in ("chapter90.html", "symbols.html"))
+    chapter, index = ((report / name).read_text() for name in ("parameters90.html", "symbols.html"))
     assert '<a href="symbols.html#symbol-90-shared.rate"><i>λ</i><sub>1</sub></a>' in chapter
-    assert '<a href="chapter90.html#key-decay.rate">decay</a>' in index
+    assert '<a href="parameters90.html#key-decay.rate">decay</a>' in index
     assert "lambda_1" in (report / "search-index.js").read_text()
 
 

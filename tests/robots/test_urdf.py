@@ -5,16 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pybullet as bullet
 import pytest
 
-from dexrepro.physics.engines.pybullet import connect, disconnect, load_arm
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.world import World
 from dexrepro.robots.kinematics import forward
 from dexrepro.robots.urdf import from_urdf
 
 pin = pytest.importorskip("pinocchio")
+bullet = pytest.importorskip("pybullet")
+
+from dexrepro.physics.engines.pybullet import connect, disconnect, load_arm  # noqa: E402
 
 INERTIAL = """<inertial><origin xyz="{0} 0.02 -0.01" rpy="0.3 0.1 {0}"/><mass value="{1}"/>
 <inertia ixx="0.01" ixy="0.001" ixz="0" iyy="0.02" iyz="0.002" izz="0.025"/></inertial>"""

@@ -4,6 +4,7 @@ TITLE = "Single-leader dual-follower manipulation of a deformable object"
 FAIRNESS = (
     "Rivals are compared with their printed parameters, on the same object and arms, over one window for all claims of "
     "an experiment; on Baxter the force that every law is asked for fades in as fast as the proposed law reaches it. "
+    "What the estimating laws are told of the object at first is told to passive impedance too, as another reading. "
     "What the estimation of movement does is judged against an integral of the force error; tuned comparisons give "
     "every law forty candidates."
 )

@@ -41,8 +41,7 @@ def by_reading(metrics: AllMetrics, config: Config) -> pd.DataFrame:
 def pictures(images: dict[str, Any], finding: str) -> Drawing:
     """Rendered views side by side, each with its label."""
     figure, grid = style.subplots(1, len(images), height=2.9)
-    for axes, (label, image) in zip(grid, style.trimmed(images).items()):
-        style.photo(axes, image, label)
+    style.photos(grid, images, {label: label for label in images})
     return style.title(figure, finding)
 
 
@@ -56,9 +55,7 @@ def steps(recording: Recording, config: Config) -> Drawing:
         "target": f"(d) {sum(config.phases):g} s:\nat the target",
     }
     figure, grid = style.subplots(1, 4, height=2.3)
-    shown = style.trimmed(recording.images)
-    for axes, (name, label) in zip(grid, labels.items()):
-        style.photo(axes, shown[name], label)
+    style.photos(grid, recording.images, labels)
     return style.title(figure, "The gripper enters through the opening and reaches the cube")
 
 
@@ -100,18 +97,18 @@ def shortest_distance(recording: Recording, config: Config) -> Drawing:
     corners = centreline(gripper_arm(config.gripper), recording[f"{ARM}.position"][index])
     centre = np.array(config.centre)
     _, foot = closest_point(centre, list(corners))
-    figure, axes = _space(style)
+    figure, axes = _space()
     axes.plot(*corners.T, color=style.BOOK, linewidth=2.5)
     axes.plot(*np.stack((centre, foot)).T, color=style.RIVAL, linewidth=2.0)
     axes.text(*(centre + foot) / 2, "$Dis_R$ ", fontsize=8, color=style.RIVAL, ha="right", va="bottom")
     axes.text(*(corners[0] + corners[1]) / 2, "  forearm", fontsize=7, color=style.BOOK)
     axes.text(*(corners[1] + corners[2]) / 2, "  tool", fontsize=7, color=style.BOOK)
-    _mark(style, axes, {"elbow": corners[0], "$P_{EA}$": corners[1], "$P_E$": corners[2], "$P_R$": centre})
+    _mark(axes, {"elbow": corners[0], "$P_{EA}$": corners[1], "$P_E$": corners[2], "$P_R$": centre})
     distance = 1e3 * float(np.linalg.norm(centre - foot))
     return style.title(figure, f"With a free tool axis the arm passes {distance:.0f} mm beside the centre")
 
 
-def _space(style: Any) -> tuple[Any, Any]:
+def _space() -> tuple[Any, Any]:
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=3.4, subplot_kw={"projection": "3d"})
     for name, set_label in zip("xyz", (axes.set_xlabel, axes.set_ylabel, axes.set_zlabel)):
         set_label(f"{name} [m]", labelpad={"x": -3, "y": 0, "z": 5}[name])
@@ -122,7 +119,7 @@ def _space(style: Any) -> tuple[Any, Any]:
     return figure, axes
 
 
-def _mark(style: Any, axes: Any, points: dict[str, Any]) -> None:
+def _mark(axes: Any, points: dict[str, Any]) -> None:
     for name, point in points.items():
         axes.scatter(*point, color="#222222", s=12)
         axes.text(*(np.asarray(point) - (0.03, 0.0, 0.03)), name, fontsize=8, ha="right", va="top")

@@ -74,10 +74,9 @@ def plans_over_sides(columns: int, height: float) -> tuple[Figure, Any, Any]:
         panel.set_xlabel("x [cm]", labelpad=1)
     for panel in sides.flat:
         panel.set(xlabel="Along the straight line [cm]")
-    for panel in plans[:, 0]:
-        panel.set_ylabel("y [cm]")
-    for panel in sides[:, 0]:
-        panel.set_ylabel("z [cm]")
+    for rows, text in ((plans, "y [cm]"), (sides, "z [cm]")):
+        for axes in rows[:, 0]:
+            axes.set_ylabel(text)
     return figure, plans, sides
 
 

@@ -13,13 +13,15 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, cast
 
 import mujoco
 import numpy as np
+from numpy.random import Generator
 
 from dexrepro.arrays import Array, Image
 from dexrepro.physics.loading import LoadingError
@@ -27,7 +29,7 @@ from dexrepro.physics.model import RigidBodyModel
 from dexrepro.physics.plant import RigidBody, SimulatedArm, Touch, Vector
 from dexrepro.physics.rendering import Camera, Overhead, Solid
 from dexrepro.physics.sensor import Sensor
-from dexrepro.robots.arm import Arm, Link, Pose, Shape
+from dexrepro.robots.arm import Arm, Pose, Shape
 from dexrepro.robots.rotations import rotated
 
 # It would print, and write a file into the working directory.
@@ -52,18 +54,16 @@ class Geometry:
     moves: bool
     solid: bool
     touchable: bool
-    friction: float
-    contact: Mapping[str, float]
+    friction: float = FRICTION
+    contact: Mapping[str, float] = field(default_factory=dict)
 
 
 class MujocoBody(RigidBody):
     """A rigid body: free if it has a mass, else moved by hand alone."""
 
-    def __init__(
-        self, scene: MujocoScene, name: str, mass: float, pose: list[float], drag: Array, geometries: list[Geometry]
-    ) -> None:
+    def __init__(self, scene: MujocoScene, name: str, mass: float, pose: list[float], drag: Array) -> None:
         self.scene, self.name, self.state = scene, name, np.r_[pose, np.zeros(6)]
-        self.drag, self.geometries, self._free = drag, geometries, mass > 0
+        self.drag, self._free = drag, mass > 0
         scene.items.append(self)
         scene.compile()
         super().__init__(len(scene.items) - 1, mass)
@@ -132,22 +132,14 @@ class MujocoArm(SimulatedArm):
     """An arm of a scene."""
 
     def __init__(
-        self,
-        scene: MujocoScene,
-        name: str,
-        arm: Arm,
-        position: Array,
-        sensor: Sensor,
-        rng: np.random.Generator | None,
-        geometries: list[Geometry],
-        prefix: str,
+        self, scene: MujocoScene, prefix: str, name: str, arm: Arm, start: Array, sensor: Sensor, rng: Generator | None
     ) -> None:
-        self.scene, self.prefix, self.geometries = scene, prefix, geometries
+        self.scene, self.prefix = scene, prefix
         self.state = np.zeros((2, arm.dof))
         self._names = [f"{prefix}{k}" for k in range(len(arm.links) + len(arm.bodies))]
         scene.items.append(self)
         scene.compile()
-        super().__init__(len(scene.items) - 1, name, arm, position, sensor, rng)
+        super().__init__(len(scene.items) - 1, name, arm, start, sensor, rng)
 
     def bind(self) -> None:
         """Find the arm in a new model and put it where it was."""
@@ -224,7 +216,12 @@ class MujocoScene:
         self.geometries: list[Geometry] = []
         self.drags: dict[int, Array] = {}
         self._pushed, self._touches = False, list[tuple[tuple[Geometry, Geometry], Vector, Array]]()
-        self._gui, self._viewer = gui, cast(Any, None)
+        self._gui, self._viewer, self._shown = gui, cast(Any, None), 0.0
+        if gui:
+            self.spec.add_texture(
+                name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
+                rgb1=(0.9, 0.93, 0.97), rgb2=(0.6, 0.65, 0.7), width=64, height=384,
+            )  # fmt: skip
         self._names = (f"n{k}" for k in itertools.count())
         self._bound = 0
         self.compile()
@@ -240,6 +237,10 @@ class MujocoScene:
             item.bind()
         self._bound = len(self.items)
         self._known = {self.model.geom(geometry.name).id: geometry for geometry in self.geometries}
+        self._solid = [
+            np.array([index for index, known in self._known.items() if known.item == item and known.solid], dtype=int)
+            for item in range(self._bound)
+        ]
         self._soften()
         mujoco.mj_step1(self.model, self.data)
         self.close()
@@ -264,6 +265,10 @@ class MujocoScene:
             self._show()
 
     def _show(self) -> None:
+        """Show the state, as often as a screen can."""
+        if (now := time.perf_counter()) - self._shown < 1 / 60:
+            return
+        self._shown = now
         if self._viewer is None:
             from mujoco import viewer
 
@@ -281,26 +286,18 @@ class MujocoScene:
     # ------------------------------------------------------------------------------------------------------ loading
 
     def arm(
-        self,
-        name: str,
-        arm: Arm,
-        position: Array,
-        *,
-        contacts: bool,
-        sensor: Sensor,
-        rng: np.random.Generator | None,
-        meshes: bool,
+        self, name: str, arm: Arm, position: Array, contacts: bool, sensor: Sensor, rng: Generator | None, meshes: bool
     ) -> MujocoArm:
-        prefix = f"{next(self._names)}/"
-        bodies = _add_arm(self.spec, arm, prefix)
-        root, *links = arm.shown
-        geometries: list[Geometry] = []
-        for link, (parent, shown) in enumerate(zip((self.spec.worldbody, *bodies), (root, *links)), start=-1):
+        prefix, item = f"{next(self._names)}/", len(self.items)
+        bodies, new = _add_arm(self.spec, arm, prefix), list[Geometry]()
+        for link, (parent, shown) in enumerate(zip((self.spec.worldbody, *bodies), arm.shown), start=-1):
             for shape in shown.shapes:
                 if shape.kind in KINDS:
-                    geometries += self._geometry(parent, shape, link, link >= 0, shape.collides, contacts, FRICTION, {})
-        self._pair(geometries)
-        return MujocoArm(self, name, arm, position, sensor, rng, geometries, prefix)
+                    solid = shape.collides
+                    known = Geometry(item, link, shape, next(self._names), link >= 0, solid, solid and contacts)
+                    new.append(self._put(parent, known))
+        self._pair(new)
+        return MujocoArm(self, prefix, name, arm, position, sensor, rng)
 
     def rigid_body(
         self,
@@ -324,33 +321,22 @@ class MujocoScene:
             moments, turn = _principal(_inertia(shapes, mass)) if inertia is None else (inertia, (1.0, 0.0, 0.0, 0.0))
             body.mass, body.ipos, body.inertia, body.iquat, body.explicitinertial = mass, (0, 0, 0), moments, turn, True
             body.add_freejoint()
-        geometries: list[Geometry] = []
-        for shape in shapes:
-            geometries += self._geometry(body, shape, -1, mass > 0, collides, collides, friction, contact)
-        self._pair(geometries)
+        item, names = len(self.items), self._names
+        self._pair([
+            self._put(body, Geometry(item, -1, shape, next(names), mass > 0, collides, collides, friction, contact))
+            for shape in shapes
+        ])  # fmt: skip
         drag = np.array((contact.get("linearDamping", 0.0), contact.get("angularDamping", 0.0)))
-        return MujocoBody(self, name, mass, [x, y, z, w, i, j, k], drag, geometries)
+        return MujocoBody(self, name, mass, [x, y, z, w, i, j, k], drag)
 
-    def _geometry(
-        self,
-        body: mujoco.MjsBody,
-        shape: Shape,
-        link: int,
-        moves: bool,
-        solid: bool,
-        touchable: bool,
-        friction: float,
-        contact: Mapping[str, float],
-    ) -> list[Geometry]:
-        name = next(self._names)
-        i, j, k, w = shape.pose.quaternion
+    def _put(self, body: mujoco.MjsBody, new: Geometry) -> Geometry:
+        shape, (i, j, k, w) = new.shape, new.shape.pose.quaternion
         body.add_geom(
-            name=name, type=KINDS[shape.kind], size=_size(shape), pos=shape.pose.xyz, quat=(w, i, j, k),
+            name=new.name, type=KINDS[shape.kind], size=_size(shape), pos=shape.pose.xyz, quat=(w, i, j, k),
             rgba=shape.colour, contype=0, conaffinity=0,
         )  # fmt: skip
-        known = Geometry(len(self.items), link, shape, name, moves, solid, solid and touchable, friction, contact)
-        self.geometries.append(known)
-        return [known]
+        self.geometries.append(new)
+        return new
 
     def _pair(self, new: list[Geometry]) -> None:
         """Let new shapes touch those of other items, unless neither can move."""
@@ -435,10 +421,7 @@ class MujocoScene:
 
     def distance(self, first: int, second: int, limit: float) -> float:
         model, data, ends = self.model, self.data, np.zeros(6)
-        one, other = (
-            np.array([model.geom(shape.name).id for shape in self.items[item].geometries if shape.solid], dtype=int)
-            for item in (first, second)
-        )
+        one, other = self._solid[first], self._solid[second]
         if not (len(one) and len(other)):
             return limit
         apart = np.linalg.norm(data.geom_xpos[one, None] - data.geom_xpos[None, other], axis=2)
@@ -542,17 +525,17 @@ class MujocoModel(RigidBodyModel):
         return self._mass.copy()
 
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array) -> Array:
-        self._pose(q)
-        self._data.qvel[:], self._data.qacc[:] = dq, ddq
-        mujoco.mj_comVel(self._model, self._data)
-        mujoco.mj_rne(self._model, self._data, 1, self._torque)
-        return self._torque.copy()
+        self._data.qacc[:] = ddq
+        return self._newton_euler(q, dq, 1)
 
     def bias(self, q: Array, dq: Array) -> Array:
+        return self._newton_euler(q, dq, 0)
+
+    def _newton_euler(self, q: Array, dq: Array, accelerates: int) -> Array:
         self._pose(q)
         self._data.qvel[:] = dq
         mujoco.mj_comVel(self._model, self._data)
-        mujoco.mj_rne(self._model, self._data, 0, self._torque)
+        mujoco.mj_rne(self._model, self._data, accelerates, self._torque)
         return self._torque.copy()
 
     def gravity(self, q: Array) -> Array:
@@ -596,7 +579,11 @@ def _add_arm(spec: mujoco.MjSpec, arm: Arm, prefix: str) -> list[mujoco.MjsBody]
     parent, bodies, step = spec.worldbody, [], 5.0 * spec.option.timestep
     places = [*arm.origins, *(pose.matrix for pose, _ in arm.bodies)]
     for index, (place, link) in enumerate(zip(places, [*arm.links, *(link for _, link in arm.bodies)], strict=True)):
-        parent = _add_link(parent, f"{prefix}{index}", place, link)
+        moments, turn = _principal(link.inertia_matrix)
+        parent = parent.add_body(
+            name=f"{prefix}{index}", pos=place[:3, 3], quat=_quaternion(place[:3, :3]), mass=link.mass, ipos=link.com,
+            inertia=moments, iquat=turn, explicitinertial=True,
+        )  # fmt: skip
         bodies.append(parent)
         if index < arm.dof:
             joint = arm.joints[index]
@@ -611,13 +598,6 @@ def _add_arm(spec: mujoco.MjSpec, arm: Arm, prefix: str) -> list[mujoco.MjsBody]
         local = np.linalg.inv(pose.matrix) @ local
     parent.add_site(name=f"{prefix}tip", pos=local[:3, 3], quat=_quaternion(local[:3, :3]))
     return bodies
-
-
-def _add_link(parent: mujoco.MjsBody, name: str, place: Array, link: Link) -> mujoco.MjsBody:
-    moments, turn = _principal(link.inertia_matrix)
-    body = parent.add_body(name=name, pos=place[:3, 3], quat=_quaternion(place[:3, :3]))
-    body.mass, body.ipos, body.inertia, body.iquat, body.explicitinertial = link.mass, link.com, moments, turn, True
-    return body
 
 
 def _principal(inertia: Array) -> tuple[Array, Array]:

@@ -51,7 +51,7 @@ async function explore(place, recorded) {
     return set;
   };
   const swatch = (name) => { const line = make("span", { className: "swatch" }); line.style.background = look.get(name).stroke; return [line, ` ${name.replaceAll("_", " ")}`]; };
-  const unitOf = Object.fromEntries(recorded.channels.map(({ name, unit }) => [name, unit]));
+  const units = Object.fromEntries(recorded.channels.map(({ name, unit }) => [name, unit.split(", ")]));
   const caseBox = boxes("Cases", cases, recorded.first.cases, swatch);
   const channelBox = boxes("Channels", recorded.channels.map((c) => c.name), recorded.first.channels, (name) => [name]);
   const reset = make("button", { type: "button", textContent: "Whole time" });
@@ -86,6 +86,12 @@ async function explore(place, recorded) {
     return all.length ? all[0].map((_, i) => Math.hypot(...all.map((column) => column[i] ?? NaN))) : undefined;
   }
 
+  // "m" of a channel or of one of its components; "" of a number without unit.
+  function unit(channel, part) {
+    const found = units[channel].length > 1 && part !== "length" ? units[channel][parts(channel).indexOf(part)] : units[channel][0];
+    return found === "1" ? "" : found;
+  }
+
   async function update() {
     const shown = chosen(caseBox);
     const wanted = chosen(channelBox);
@@ -104,10 +110,10 @@ async function explore(place, recorded) {
     const node = old?.node ?? make("div", { className: "panel" });
     const part = old?.part ?? (components.includes("") ? "" : components[0]);
     if (!old) {
-      const title = make("h3", {}, channel + (unitOf[channel] ? ` [${unitOf[channel]}]` : ""));
+      const title = make("h3", {}, make("span"));
       if (!components.includes("")) {
         const select = make("select", { ariaLabel: `Component of ${channel}` });
-        for (const name of [...components, "length"]) select.append(make("option", { value: name, textContent: name === "length" ? "length of the vector" : name }));
+        for (const name of units[channel].length > 1 ? components : [...components, "length"]) select.append(make("option", { value: name, textContent: name === "length" ? "length of the vector" : name }));
         select.addEventListener("change", () => { panels.get(channel).part = select.value; draw(channel, chosen(caseBox)); });
         title.append(select);
       }
@@ -115,6 +121,8 @@ async function explore(place, recorded) {
       stage.append(node);
     }
     old?.plot.destroy();
+    const called = unit(channel, part);
+    node.querySelector("h3 span").textContent = `${channel} [${called || "no unit"}]`;
     const tables = shown.map((name) => [data.get(name).time, values(data.get(name), channel, part, components)]);
     const kept = tables.map((table, i) => [shown[i], table]).filter(([, [, column]]) => column);
     const joined = kept.length ? uPlot.join(kept.map(([, table]) => table)) : [[0, 1]];
@@ -127,7 +135,7 @@ async function explore(place, recorded) {
       axes: [{ ...axis, label: "Time [s]", labelSize: 18, labelFont: "12px system-ui" }, { ...axis, size: 62 }],
       series: [{ label: "t", value: (_, time) => (time == null ? "–" : `${text(time)} s`) }, ...kept.map(([name]) => ({
         label: name.replaceAll("_", " "), ...look.get(name), width: 1.6, spanGaps: true, points: { show: false },
-        value: (_, number) => (number == null ? "–" : `${text(number)} ${unitOf[channel]}`),
+        value: (_, number) => (number == null ? "–" : `${text(number)} ${called}`),
       }))],
       hooks: { setScale: [(self, key) => { if (key === "x" && !zoom.busy && self.status) zoomTo(self.scales.x.min, self.scales.x.max); }],
         setCursor: [(self) => { if (!told && self.cursor.left >= 0 && self.cursor.event) for (const listener of listeners) listener(self.posToVal(self.cursor.left, "x")); }] },

@@ -9,6 +9,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recording, Recordings
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 from .experiment import MAPPINGS, boards
 
@@ -19,6 +20,7 @@ FIGURES = {
         "Most hits are closer to the centres with the proposed mapping, the widest few are its own.",
     ),
 }
+UNITS = {"scale": "1", "tool": "m", "hand": "m"}
 TABLES = {"T1.D": "Scores with the general and the proposed mapping, for several constant scales and ring widths"}
 
 
@@ -39,12 +41,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     axis.set_yticks((0, 1), MAPPINGS)
     axis.set(ylim=(-0.5, 1.5), xlabel="Posture load [deg s]")
     style.panel(axis, "c", "forearm, an operator a dot")
-    style.title(
-        figure,
-        f"Speed-dependent scaling: {numbers['wins']} of {len(loads)} score higher, {numbers['ties']} equal, "
-        f"{numbers['losses']} lower",
-    )
-    return {"1.15": figure}
+    scores = f"{numbers['wins']} of {len(loads)} score higher, {numbers['ties']} equal, {numbers['losses']} lower"
+    return {"1.15": style.title(figure, f"Speed-dependent scaling: {scores}")}
 
 
 def _draw_hits(axis: Any, hits: pd.DataFrame, config: Config) -> None:
@@ -75,10 +73,8 @@ def _draw_speed(axes: Any, recording: Recording) -> None:
     near = np.min(np.linalg.norm(recording["tool"][:, None, 1:] - boards()[None, :, 1:], axis=2), axis=1)
     axes[0].plot(time[part], speed[part], **style.LINES["plain"])
     axes[0].set_ylabel("Hand [m/s]", color=style.PLAIN)
-    twin = axes[0].twinx()
+    twin = style.twin(axes[0], "Scale $s$ [-]", style.BOOK)
     twin.plot(time[part], recording["scale"][part], **style.LINES["book"])
-    twin.spines["right"].set_visible(True)
-    twin.set_ylabel("Scale $s$ [-]", color=style.BOOK)
     axes[1].semilogy(time[part], 1e3 * near[part], **style.LINES["rival"])
     axes[1].set(xlabel="Time [s]", ylabel="To centre [mm]")
     axes[0].tick_params(labelbottom=False)
@@ -91,11 +87,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
             "general_score", "proposed_score", "general_time", "proposed_time", "general_load",
             "proposed_load")  # fmt: skip
     units = {"radius": "mm", "time": "s", "load": "deg s"}
-    rows = []
-    for case in recordings:
-        row: dict[str, Any] = {"case": case}
-        for key in keys:
-            unit = units.get(key.rpartition("_")[2])
-            row[key.replace("_", " ") + (f" [{unit}]" if unit else "")] = metrics[case].get(key)
-        rows.append(row)
-    return {"T1.D": pd.DataFrame(rows)}
+    found = {key: units.get(key.rpartition("_")[2]) for key in keys}
+    columns = {key: key.replace("_", " ") + (f" [{unit}]" if unit else "") for key, unit in found.items()}
+    return {"T1.D": by_case(metrics, columns, recordings)}

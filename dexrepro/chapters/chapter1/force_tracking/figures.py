@@ -27,6 +27,10 @@ FIGURES = {
         "The proposed law has the smallest force error of three controllers in all three cases.",
     ),
 }
+UNITS = {
+    "error": "N", "displacement": "m", "partner": "m", "reference": "m", "contact": "m", "stiffness": "N/m",
+    "joints": "rad", "tracking": "m", "lyapunov": "J", "weights": "m/s, 1/s, 1/s, 1/s",
+}  # fmt: skip
 TABLES = {"T1.A": "Force error of every law in the three cases of Fig. 1.10"}
 ROLES = {"proposed": "book", "force": "rival", "passive": "plain"}
 
@@ -75,20 +79,15 @@ def _draw_errors(recordings: Recordings, metrics: Any) -> Drawing:
         time = recording.time
         axes[2, column].plot(time, 1e3 * recording["contact"], **style.LINES["reference"], label="$x_d$")
         axes[2, column].plot(time, 1e3 * recording["reference"], **style.LINES["book"], label="$x_r$")
-        twin = axes[2, column].twinx()
+        twin = style.twin(axes[2, column], "Stiffness $k_o$ [N/m]" if column == 2 else "")
         twin.plot(time, recording["stiffness"], **style.LINES["extra1"], label="$k_o$")
         twin.set_ylim(30, 65)
-        twin.spines["right"].set_visible(True)
-        if column == 2:
-            twin.set_ylabel("Stiffness $k_o$ [N/m]")
-        else:
+        if column < 2:
             twin.set_yticklabels([])
         axes[3, column].semilogy(time, recording["lyapunov"], **style.LINES["book"])
-        axes[3, column].set_xlabel("Time [s]")
         axes[1, column].axhline(0, color="black", linewidth=0.4)
         axes[0, column].set_title(("Ramp, constant $k_o$", "Ramp, varying $k_o$", "Sine, varying $k_o$")[column])
-    for row, text in enumerate(("Force error [N]", "after 5 s [N]", "Position [mm]", "Lyapunov $V$ [-]")):
-        axes[row, 0].set_ylabel(text)
+    style.edges(axes, "Time [s]", ("Force error [N]", "after 5 s [N]", "Position [mm]", "Lyapunov $V$ [-]"))
     axes[0, 0].legend(loc="lower right")
     handles = [*axes[2, 0].get_lines(), *twin.get_lines()]
     axes[2, 0].legend(handles, [line.get_label() for line in handles], loc="lower right", ncols=3)

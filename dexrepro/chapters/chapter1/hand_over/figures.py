@@ -14,6 +14,7 @@ FIGURES = {
         "With a latch the phase changes once, with a bare comparison it changes many times.",
     )
 }
+UNITS = {"force": "N", "sensed": "N", "phase": "1"}
 TABLES = {"T1.G": "Hand-over from the field to the force law"}
 
 
@@ -37,8 +38,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     axes[0, 0].set_ylabel("Contact force [N]")
     axes[0, 0].set_ylim(-0.15, 3.4)
     axes[0, 0].legend(loc="upper left", ncols=2)
-    style.title(figure, "A latch hands over once where a bare comparison chatters")
-    return {"1.C": figure}
+    return {"1.C": style.title(figure, "A latch hands over once where a bare comparison chatters")}
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

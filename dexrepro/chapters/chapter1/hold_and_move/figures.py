@@ -36,6 +36,10 @@ FIGURES = {
         "Force errors of three laws in four settings: as printed, one late sample, a stiff object, tuned gains.",
     ),
 }
+UNITS = {
+    "force": "N", "measured": "N", "reference": "m", "distance": "m", "partner": "m", "tilt": "rad", "lag": "m",
+    "twist": "rad", "turned": "rad", "pointing": "rad", "slip": "m", "object": "m, m, m, 1, 1, 1, 1", "joints": "rad",
+}  # fmt: skip
 TABLES = {"T1.B": "Force error after the 8th second along three trajectories, beside the book's nine numbers"}
 FILM = Film(
     "t1_proposed", "Two arms lift the ball, tilt and swing it and put it down while the force stays at 15 N.", VIEW,
@@ -67,24 +71,19 @@ def _draw_forces(recordings: Recordings, metrics: Any, config: Config) -> Drawin
             axes[1, column].plot(recording.time[early], recording["force"][early], **style.LINES[role])
         numbers = [metrics[f"{trial}_{law}"]["rmse"] for law in LAWS]
         axes[0, column].set_title("RMSE " + " / ".join(f"{value:.2f}" for value in numbers) + " N")
-        for row in (0, 1):
-            axes[row, column].axhline(config.desired_force, **style.LINES["reference"])
+        for axis in axes[:, column]:
+            axis.axhline(config.desired_force, **style.LINES["reference"])
+            axis.set_ylim(0, 30)
         style.event(axes[0, column], config.settled, f"{config.settled:g} s")
-        axes[0, column].set_ylim(0, 30)
-        axes[1, column].set(xlabel="Time [s]", ylim=(0, 30))
-    axes[0, 0].set_ylabel("Contact force [N]")
-    axes[1, 0].set_ylabel("First 1.5 s [N]")
+
+    style.edges(axes, "Time [s]", ("Contact force [N]", "First 1.5 s [N]"))
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     best = all(
         metrics[f"{t}_proposed"]["rmse"] < min(metrics[f"{t}_{law}"]["rmse"] for law in ("passive", "fixed"))
         for t in PRINTED
     )
-    return style.title(
-        figure,
-        "The proposed law holds the force best on "
-        + ("all three trajectories" if best else "some of the trajectories only")
-        + " (proposed / passive / fixed)",
-    )
+    where = "all three trajectories" if best else "some of the trajectories only"
+    return style.title(figure, f"The proposed law holds the force best on {where} (proposed / passive / fixed)")
 
 
 def _draw_scene(recording: Recording) -> Drawing:

@@ -13,6 +13,7 @@ FIGURES = {
         "V falls at every step only for the ideal law; below an L of about 0.18 the force error grows.",
     )
 }
+UNITS = {"lyapunov": "J", "error": "N"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:

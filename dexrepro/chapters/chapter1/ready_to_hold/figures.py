@@ -8,6 +8,7 @@ import pandas as pd
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 from dexrepro.physics.rendering import Camera
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 from .experiment import APPROACH, HOLD, INSTANTS, PITCHED, SHAKEN
 
@@ -29,6 +30,10 @@ FIGURES = {
         "AFR follows the object at a distance, comes to it when DFR does and keeps facing DFR.",
     ),
 }
+UNITS = {
+    "follower": "m", "leader": "m", "object": "m", "seen": "m", "weights": "1", "ready": "m", "facing": "rad",
+    "pointing": "rad", "joints": "rad",
+}  # fmt: skip
 TABLES = {"T1.E": "Potential field: adjustable weights and ablations"}
 FILM = Film(
     "adjustable", "The left arm follows the ball that a person moves, and comes to it when the right arm does; contact "
@@ -141,8 +146,4 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     columns = {"lag_rms": "lag RMS [m]", "lag_most": "largest lag [m]", "clearance": "least clearance [m]",
                "own_contact": "AFR touches [s]", "partner_contact": "DFR touches [s]", "facing": "facing [deg]",
                "pointing": "pointing [deg]"}  # fmt: skip
-    rows = [
-        {"case": case.replace("_", " ")} | {text: metrics[case].get(key) for key, text in columns.items()}
-        for case in recordings
-    ]
-    return {"T1.E": pd.DataFrame(rows)}
+    return {"T1.E": by_case(metrics, columns, recordings).replace("_", " ", regex=True)}

@@ -36,8 +36,8 @@ CLAIMS = (
         "1.15",
         "The scale grows with the hand's speed from 1 to 8.",
         every(
-            within("relative_pose.default.scale_least", 0.999, 1.001),
-            within("relative_pose.default.scale_most", 7.999, 8.001),
+            within("relative_pose.default.scale_least", 0.99, 1.01),
+            within("relative_pose.default.scale_most", 7.9, 8.1),
             less("relative_pose.default.scale_steps_down", 0.5),
         ),
         where="Eq. (1.45)",

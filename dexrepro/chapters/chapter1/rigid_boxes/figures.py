@@ -26,6 +26,7 @@ FIGURES = {
         "A small gain holds the rigid box quietly, from 0.02 on the force jumps from sample to sample.",
     ),
 }
+UNITS = {"force": "N", "height": "m", "phase": "1"}
 TABLES = {"T1.F": "Boxes carried into the bin"}
 FILM = Film(
     "medium", "Two arms grip a rigid box by friction, carry it and drop it into the bin.",

@@ -41,12 +41,9 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     printed, best = (variants[variants["law"] == law].set_index(["stiffness", "delay"])["rmse"]
                      for law in ("proposed", "passive, own gain"))  # fmt: skip
     won = [int((printed - best < 0).xs(delay, level="delay").sum()) for delay in DELAYS]
-    style.title(
-        figure,
-        f"With {', '.join(map(str, DELAYS))} late samples the printed gain beats the best impedance for "
-        f"{', '.join(map(str, won))} of {len(printed) // len(DELAYS)} objects",
-    )
-    return {"1.E": figure}
+    times, objects = ", ".join(map(str, DELAYS)), f"{', '.join(map(str, won))} of {len(printed) // len(DELAYS)} objects"
+    finding = f"With {times} late samples the printed gain beats the best impedance for {objects}"
+    return {"1.E": style.title(figure, finding)}
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
@@ -73,20 +70,16 @@ def _flips(t: Metrics, c: Metrics) -> list[dict[str, Any]]:
         return {"claim": claim, "variant": variant, "rival": what, "RMS force error, proposed [N]": own,
                 "RMS force error, rival [N]": other, "claim holds": "yes" if own < other else "no"}  # fmt: skip
 
-    rows = [row("C1.01", f"case {i}, as printed", t[f"proposed_c{i}"], t[f"force_c{i}"], "force") for i in (1, 2, 3)]
-    rows += [
-        row("C1.01", f"case {i}, equal gains of 0.05", t[f"equal_c{i}"], t[f"force_c{i}"], "force") for i in (1, 2, 3)
-    ]
-    rows += [
-        row("C1.01", f"case {i}, equal gains of 0.05, after 5 s", t[f"equal_late{i}"], t[f"force_late{i}"], "force")
-        for i in (1, 2, 3)
-    ]
-    rows += [
-        row("C1.01", f"case {i}, force gain 0.5", t[f"proposed_c{i}"], t[f"fast_force_c{i}"], "force")
-        for i in (1, 2, 3)
-    ]
-    rows += [
-        row("C1.01", f"case {i}, critically damped", t[f"proposed_c{i}"], t[f"critical_c{i}"], "passive")
+    compared = (
+        ("as printed", "proposed_c", "force_c", "force"),
+        ("equal gains of 0.05", "equal_c", "force_c", "force"),
+        ("equal gains of 0.05, after 5 s", "equal_late", "force_late", "force"),
+        ("force gain 0.5", "proposed_c", "fast_force_c", "force"),
+        ("critically damped", "proposed_c", "critical_c", "passive"),
+    )
+    rows = [
+        row("C1.01", f"case {i}, {variant}", t[f"{own}{i}"], t[f"{other}{i}"], rival)
+        for variant, own, other, rival in compared
         for i in (1, 2, 3)
     ]
     rows += [row("C1.01", "case 1, follower lags 0.2 s", t["lagging_c1"], t["force_c1"], "force")]

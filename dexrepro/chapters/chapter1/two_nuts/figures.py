@@ -22,6 +22,7 @@ FIGURES = {
         "The hand stays inside its comfortable range thanks to re-fixing, and the tool shakes less.",
     ),
 }
+UNITS = {"roll": "rad", "tool_roll": "rad", "hand": "m", "tool": "m", "scale": "1"}
 TABLES = {"T1.C": "Posture, precision and time of thirteen synthetic operators with both mappings (medians)"}
 
 

@@ -25,6 +25,7 @@ FIGURES = {
         "With printed gains the proposed law keeps the force closest to the desired one; with tuned gains all but tie.",
     ),
 }
+UNITS = {"reference": "m"}
 TABLES = {"T2.2": "Force errors of the Baxter experiment: printed and tuned gains, two balloons"}
 FILM = Film(
     "proposed", "The follower, which feels only the force, holds the balloon along a line and a lap of a circle.",

@@ -21,6 +21,7 @@ FIGURES = {
         "From both starts the follower reaches the same place and the force becomes 10 N along the holding line.",
     ),
 }
+UNITS = {"reference": "m"}
 FILM = Film(
     "off_100", "The follower touches the balloon 0.1 m off the line, finds the line and holds 10 N.", balloon_pair.VIEW,
     "object.force", "Holding force [N]", reference=10.0,

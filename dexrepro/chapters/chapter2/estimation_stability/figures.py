@@ -16,6 +16,7 @@ FIGURES = {
         "With time counted from the start the law diverges when its step limit is passed.",
     ),
 }
+UNITS = {"lyapunov": "N² s", "change": "N² s", "exact_change": "N² s", "predicted_fall": "N² s", "error": "N"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
@@ -30,14 +31,14 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     left.set(yscale="log", ylim=(1e-4, 200), xlabel="Time [s]", ylabel="Prediction error [N]")
     left.axvline(np.nan, color=style.REFERENCE, linewidth=0.6, label="predicted instant")
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower left", ncols=4)
-    style.panel(left, "a", "time from the start, equal rates")
+
     run = recordings["lyapunov"]
     fall = 1e3 * (run["lyapunov"][0] - run["lyapunov"])
     right.plot(run.time, fall, label="measured", **style.LINES["book"])
     right.plot(run.time, 1e3 * run["predicted_fall"], label="exact decrements, summed", **style.LINES["reference"])
     right.set(xlabel="Time [s]", ylabel="$V(0) - V$ [$10^{-3}$]")
     right.legend()
-    style.panel(right, "b", "constant parameters")
+    style.panels((left, right), "time from the start, equal rates", "constant parameters")
     worst = 100 * max(metrics[case]["relative_difference"] or 0.0 for case in growing)
-    style.title(figure, f"Time from the start makes the law diverge within {worst:.0f} % of the predicted instant")
-    return {"2.B": figure}
+    finding = f"Time from the start makes the law diverge within {worst:.0f} % of the predicted instant"
+    return {"2.B": style.title(figure, finding)}

@@ -24,12 +24,14 @@ FIGURES = {
         "The lead lowers the error on Traj. 1 unless the velocity is estimated as printed; on Traj. 2 it does little.",
     ),
 }
+UNITS = {"reference": "m", "estimate": "m, N/m, m/s"}
 TABLES = {"T2.1": "The eighteen simulations of Table 2.1 with their force errors, and our further rows"}
 
 NAMES = {
     "force": "F",
     "force_integral": "F (integral)",
     "passive_impedance": "PIm",
+    "passive_told": "PIm, told as much as NoIm",
     "no_impedance": "NoIm",
     "impedance": "Im",
 }

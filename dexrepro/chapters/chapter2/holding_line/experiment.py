@@ -44,10 +44,15 @@ def measure(recording: Recording, config: Config) -> Metrics:
 
 
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
-    gains: Metrics = {}
+    """What (2.8) gains of force error [N], and by how much the tips are farther apart than intended [mm]."""
+    found: Metrics = {}
+    intended = config.rest_length - config.desired_force / config.stiffness
     for case in ("case1", "case2", "aligned"):
-        rmse = [metrics.get(f"{case}_{switch}", {}).get("rmse") for switch in ("without", "with")]
-        off, on = rmse
+        off, on = (metrics.get(f"{case}_{switch}", {}).get("rmse") for switch in ("without", "with"))
         if off is not None and on is not None:
-            gains[f"{case}_gain"] = off - on
-    return gains
+            found[f"{case}_gain"] = off - on
+        for name in (f"{case}_without", f"{case}_with"):
+            distance = metrics.get(name, {}).get("mean_distance")
+            if distance is not None:
+                found[f"{name}_excess"] = 1e3 * (distance - intended)
+    return found

@@ -13,6 +13,7 @@ FIGURES = {
         "With the regulation the force stays at 1 N; without it the force is too small, in case 2 at times zero.",
     ),
 }
+UNITS = {"reference": "m", "estimate": "m, N/m, m/s"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
@@ -36,5 +37,5 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     grid[0, 0].legend(loc="upper right", ncols=3)
     lost = metrics.get("case2_without", {}).get("lost")
     found = f"; without it the object is lost for {100 * lost:.0f} % of case 2" if lost else ""
-    style.title(figure, f"The regulation keeps the arms on one line and the force at {config.desired_force:g} N{found}")
-    return {"2.5": figure}
+    finding = f"The regulation keeps the arms on one line and the force at {config.desired_force:g} N{found}"
+    return {"2.5": style.title(figure, finding)}

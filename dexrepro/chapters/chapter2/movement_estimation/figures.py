@@ -23,7 +23,7 @@ FIGURES = {
         "The estimated rest position follows the true one up to a constant offset of about 5 mm.",
     ),
 }
-UNITS = {"reference": "m", "rest_position": "m"}
+UNITS = {"reference": "m", "rest_position": "m", "estimate": "m, N/m, m/s"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
@@ -75,9 +75,8 @@ def _draw_estimates(cases: list[str], recordings: Recordings, metrics: Any, conf
         column[1].plot(recording.time, 1e3 * offset, label="predicted offset", **style.LINES["reference"])
         column[0].set_title(rf"$\sigma$ = {parameters.period:g} s")
         column[1].set_ylim(0, 16)
-        column[2].set(ylim=(-0.15, 0.15), xlabel="Time [s]")
-    for axes, label in zip(grid[:, 0], ("$\\hat x_c$, $x_c$ [m]", "$\\hat x_c - x_c$ [mm]", "$\\|F\\| - f_d$ [N]")):
-        axes.set_ylabel(label)
+        column[2].set_ylim(-0.15, 0.15)
+    style.edges(grid, "Time [s]", ("$\\hat x_c$, $x_c$ [m]", "$\\hat x_c - x_c$ [mm]", "$\\|F\\| - f_d$ [N]"))
     grid[0, -1].legend(loc="lower left")
     grid[1, -1].legend(loc="upper right")
     offsets = [

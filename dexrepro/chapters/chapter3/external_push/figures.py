@@ -37,6 +37,10 @@ FIGURES = {
         "Without noise a larger gain is always better; with noise there is a best gain.",
     ),
 }
+UNITS = {
+    "push": "N", "tracking": "m", "observed": "N m", "external": "N m", "nodes": "1", "contact": "1, N, m",
+    "error": "m", "rcm_distance": "m",
+}  # fmt: skip
 TABLES = {"T3.B": "Push: laws, models and directions", "T3.C": "Observer gain: lag and relative error"}
 FILM = Film(
     "plus", "A push on the forearm moves the arm by millimetres; it returns when let go.", FILMED,
@@ -94,13 +98,11 @@ def _draw_torques(recordings: Recordings, metrics: Any, config: Config) -> Drawi
     force.margins(y=0.35)
     for axes in (force, top, middle, bottom):
         style.phase(axes, push.start, push.start + push.duration, "push" if axes is force else "")
-    for axes, letter, text in (
-        (force, "a", "force on the forearm"),
-        (top, "b", f"external torque, model with {abs(error):.0%} error in masses (pale: true)"),
-        (middle, "c", "external torque, model with exact masses"),
-        (bottom, "d", "distance of the arm to the remote centre"),
-    ):
-        style.panel(axes, letter, text)
+    style.panels(
+        (force, top, middle, bottom), "force on the forearm",
+        f"external torque, model with {abs(error):.0%} error in masses (pale: true)",
+        "external torque, model with exact masses", "distance of the arm to the remote centre",
+    )  # fmt: skip
     errors = [100 * metrics[case]["observer_error"] for case in ("plus", "exact_plus") if case in metrics]
     found = f", with an exact model by {errors[1]:.0f} %" if len(errors) > 1 else ""
     return style.title(figure, f"The observed torque errs by {errors[0]:.0f} %, mostly unknown weight{found}")
@@ -118,11 +120,8 @@ CURVES = {
 def _draw_effect(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     figure, (left, right) = style.subplots(1, 2, height=2.9)
     push = config.cases["plus"].push
-    for case, (label, line) in CURVES.items():
-        if case in recordings:
-            recording = recordings[case]
-            left.plot(recording.time, 1e3 * recording["error"], label=label, **style.LINES[line])
-            right.plot(recording.time, 1e3 * recording["rcm_distance"], label=label, **style.LINES[line])
+    style.curves(left, recordings, CURVES, "error", 1e3)
+    style.curves(right, recordings, CURVES, "rcm_distance", 1e3)
     for axes in (left, right):
         style.phase(axes, push.start, push.start + push.duration, "push")
         axes.set(xlabel="Time [s]", xlim=(push.start - 1, push.start + push.duration + 2.1))
@@ -139,12 +138,9 @@ def _draw_effect(recordings: Recordings, metrics: Any, config: Config) -> Drawin
 
 def _draw_sweep(table: pd.DataFrame) -> Drawing:
     figure, axes = style.subplots(width=style.ONE_COLUMN, height=2.4)
-    axes.plot(
-        table.gain, 100 * table.clean_error, marker="o", markersize=3, label="exact momentum", **style.LINES["book"]
-    )
-    axes.plot(
-        table.gain, 100 * table.noisy_error, marker="s", markersize=3, label="noisy momentum", **style.LINES["rival"]
-    )
+    for kind, word, marker, line in (("clean", "exact", "o", "book"), ("noisy", "noisy", "s", "rival")):
+        axes.plot(table.gain, 100 * table[f"{kind}_error"], marker=marker, markersize=3, label=f"{word} momentum",
+                  **style.LINES[line])  # fmt: skip
     axes.set(xscale="log", yscale="log", xlabel="$K_{Ex}$ [1/s]", ylabel="Error of $\\sigma$ [%]")
     axes.legend()
     best = table.gain.iloc[int(table.noisy_error.argmin())]

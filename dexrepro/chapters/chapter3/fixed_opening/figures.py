@@ -50,6 +50,7 @@ FIGURES = {
         for n in (1, 2, 3, 4)
     },
 }
+UNITS = {"tracking": "m", "observed": "N m", "nodes": "1", "contact": "1, N, m", "error": "m", "rcm_distance": "m"}
 TABLES = {
     "T3.A": "Fixed opening: every law and model, four reaches",
     "T3.S": "Sensitivity: variants of unprinted values and of the reading, and what becomes of the claims",

@@ -29,6 +29,10 @@ FIGURES = {
         "The arm follows the moving opening within a few millimetres.",
     ),
 }
+UNITS = {
+    "lid": "m", "centre": "m", "tracking": "m", "observed": "N m", "nodes": "1", "contact": "1, N, m", "error": "m",
+    "rcm_distance": "m",
+}  # fmt: skip
 TABLES = {"T3.D": "Moving opening: laws and models"}
 FILM = Film(
     "track", "The lid moves along a figure of eight while the arm stands in its opening and holds the target.", FILMED,
@@ -76,11 +80,8 @@ CURVES = {
 
 def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Drawing:
     figure, (left, right) = style.subplots(1, 2, height=2.7)
-    for case, (label, line) in CURVES.items():
-        if case in recordings:
-            run = recordings[case]
-            left.plot(run.time, 1e3 * run["error"], label=label, **style.LINES[line])
-            right.plot(run.time, 1e3 * run["rcm_distance"], label=label, **style.LINES[line])
+    style.curves(left, recordings, CURVES, "error", 1e3)
+    style.curves(right, recordings, CURVES, "rcm_distance", 1e3)
     motion = config.cases["track"].motion
     for axes in (left, right):
         style.phase(axes, motion.start, motion.start + motion.period, "opening moves")

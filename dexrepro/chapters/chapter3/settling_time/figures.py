@@ -41,11 +41,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     axes.set(xscale="log", xlabel=r"First joint error $\|e_1(0)\|$ [rad]", ylabel="Settling time over that from 1 rad")
     axes.set_ylim(0, None)
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
-    style.title(
-        figure,
-        f"From 3.16 to 10 rad: printed gains {growth[0]:+.1%}, linear terms alone {growth[1]:+.1%} of settling time",
-    )
-    return {"3.A": figure}
+    change = f"printed gains {growth[0]:+.1%}, linear terms alone {growth[1]:+.1%}"
+    return {"3.A": style.title(figure, f"From 3.16 to 10 rad: {change} of settling time")}
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

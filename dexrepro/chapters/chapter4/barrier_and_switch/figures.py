@@ -21,7 +21,10 @@ FIGURES = {
         "The switch hands over to the robust term only in the transient, and stays below 1 with the square inside.",
     )
 }
-UNITS = {"error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²"}
+UNITS = {
+    "error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²", "usage": "1",
+    "share": "1", "nodes": "1", "feature_energy": "1", "input_norm": "mixed", "input_peak": "mixed", "segment": "1",
+}  # fmt: skip
 TABLES = {
     "T4.B": "The ellipse from an empty network, one change at a time",
     "T4.S": "Changes that turn a verdict of chapter 4",
@@ -61,10 +64,8 @@ def _draw_run(recordings: Recordings, share: Any, error: Any) -> None:
     now = base.time <= 3.0
     share.plot(base.time[now], base["share"][now], marker=".", markersize=2.5, **style.LINES["book"])
     share.set(xlabel="Time [s]", ylabel="E [-]", ylim=(-0.05, 1.1), title="in the run")
-    twin = share.twinx()
+    twin = style.twin(share, r"largest $|\Xi_k|$ [-]", style.RIVAL)
     twin.plot(base.time[now], base["input_peak"][now], **style.LINES["rival"])
-    twin.set_ylabel(r"largest $|\Xi_k|$ [-]", color=style.RIVAL)
-    twin.spines["right"].set_visible(True)
     share.yaxis.label.set_color(style.BOOK)
     for case, label, line in (("base", "with robust term", "book"), ("no_robust", "without", "plain")):
         if case in recordings:
@@ -117,16 +118,8 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
         value = found[case].get(metric)
         limit = 1.0 if against is None else found[against].get(metric)
         holds = _holds(value, limit, below=against is None)
-        turns.append(
-            {
-                "claim": claim,
-                "change": change,
-                "quantity": COLUMNS[metric],
-                "value": value,
-                "held against": limit,
-                "claim holds": holds,
-            }
-        )
+        turns.append({"claim": claim, "change": change, "quantity": COLUMNS[metric], "value": value,
+                      "held against": limit, "claim holds": holds})  # fmt: skip
     return {"T4.B": by_case(found, COLUMNS), "T4.S": pd.DataFrame(turns)}
 
 

@@ -26,7 +26,10 @@ FIGURES = {
         "close.",
     ),
 }
-UNITS = {"error": "m", "tip": "m", "reference": "m", "position": "rad", "torque": "N m"}
+UNITS = {
+    "error": "m", "tip": "m", "reference": "m", "position": "rad", "torque": "N m", "usage": "1", "share": "1",
+    "nodes": "1", "activation": "1", "phase": "1",
+}  # fmt: skip
 TABLES = {"T4.C": "Nine trajectories with a hanging payload: errors, bound and nodes by method"}
 FILM = Film(
     "reuse", "With what it learned the arm carries the loose payload from A to D, E and F (drawn hanging straight).",
@@ -57,11 +60,9 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 def _draw_phases(recording: Recording, config: Config) -> Drawing:
     figure, axes = style.subplots(1, 3, height=2.6)
-    shown = style.trimmed(recording.images)
-    for k, (panel, where) in enumerate(zip(axes, ("near B", "near E", "from A to D")), 1):
-        style.photo(
-            panel, shown[f"phase{k}"], f"phase {'I' * k}, {config.cases['reuse'].task.pictured[k - 1]:.1f} s: {where}"
-        )
+    instants = zip(config.cases["reuse"].task.pictured, ("near B", "near E", "from A to D"))
+    words = {f"phase{k}": f"phase {'I' * k}, {time:.1f} s: {where}" for k, (time, where) in enumerate(instants, 1)}
+    style.photos(axes, recording.images, words)
     axes[0].annotate("orange: A, B, C; green: D, E, F", (0, -0.04), xycoords="axes fraction", size=7, va="top")
     return style.title(figure, "The payload hangs from the gripper on a ball joint")
 

@@ -56,7 +56,10 @@ FIGURES = {
     "4.9": Figure(WEIGHTS, "Weights for a threshold of 30 settle and ripple at the orbit's frequency."),
     "4.10": Figure(WEIGHTS, "For a threshold of 50 a single node carries the whole estimate."),
 }
-UNITS = {"error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²"}
+UNITS = {
+    "error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²", "usage": "1",
+    "share": "1", "nodes": "1", "feature_energy": "1", "input_norm": "mixed", "input_peak": "mixed", "segment": "1",
+}  # fmt: skip
 TABLES = {"T4.A": "Ellipse after training: errors, oscillation, nodes and gain of every method"}
 
 
@@ -212,11 +215,9 @@ def paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawin
         panel.plot(*recordings["broad20"]["tip"][now].T, color=style.BOOK, linewidth=0.8)
         panel.plot(*ends[k].T, **style.LINES["reference"])
         panel.set_title(f"stroke {ROMAN[k]}: {metrics['broad20'][f'stroke{k + 1}_rmse_mm']:.1f} mm", fontsize=7)
-        panel.set_xlabel("x [m]")
     for panel in axes.flat:
         panel.set(aspect="equal", xlim=(0.63, 1.37), ylim=(-0.3, 0.3))
-    for panel in axes[:, 0]:
-        panel.set_ylabel("y [m]")
+    style.edges(axes, "x [m]", "y [m]")
     _, best = min((number(metrics[case]["steady_rmse_mm"]), METHODS[case][0]) for case in shown)
     text = f"Ellipse after training (error: rms of the last 10 s), strokes below; {best} ends nearest"
     return style.title(figure, text)
@@ -226,9 +227,9 @@ GROUPS = {"thresholds of the broad network": ("broad20", "broad30", "broad50"),
           "broad network and its rivals": ("broad20", "rbf10", "fuzzy", "rbf2")}  # fmt: skip
 
 
-def envelope(time: Array, size: Array, width: float = 0.5) -> Array:
-    """Largest size within half a width [s] before and after each instant."""
-    return maximum_filter1d(size, max(round(width / (time[1] - time[0])), 1))
+def envelope(time: Array, size: Array) -> Array:
+    """Largest size within 0.25 s before and after each instant."""
+    return maximum_filter1d(size, max(round(0.5 / (time[1] - time[0])), 1))
 
 
 def errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:

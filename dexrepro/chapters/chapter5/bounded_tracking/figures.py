@@ -34,6 +34,7 @@ FIGURES = {
         "Joint errors, share of the bound and joint torques over time under four laws.",
     ),
 }
+UNITS = {"drag": "N", "velocity_error": "rad/s", "desired": "rad", "error": "rad"}
 TABLES = {
     "T5.G": "Tracking of the letter w under compared laws: share of the bound, errors, torque",
     "T5.H": "Sensitivity of the bound to model, contact, sensors and start",
@@ -93,22 +94,14 @@ def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) ->
         style.band(column[0], time, -bound.lower * limit, bound.upper * limit)
         for joint, dashes in zip(range(3), ("-", "--", ":")):
             column[0].plot(time, 1e3 * recording["error"][:, joint], color=style.LINES[line]["color"], linestyle=dashes)
-            column[2].plot(
-                time,
-                recording["arm.torque"][:, joint],
-                color=style.LINES[line]["color"],
-                linestyle=dashes,
-                linewidth=0.7,
-            )
+            column[2].plot(time, recording["arm.torque"][:, joint], color=style.LINES[line]["color"], linestyle=dashes,
+                           linewidth=0.7)  # fmt: skip
         column[1].plot(time, pen.bound_use(recording, config), color=style.LINES[line]["color"])
         column[1].axhline(1, **style.LINES["reference"])
         column[0].set(ylim=(-160, 160), title=name)
         column[1].set(yscale="log", ylim=(3e-4, 5))
-        column[2].set(ylim=(-0.55, 0.55), xlabel="Time [s]")
-    for axes, text in zip(
-        grid[:, 0], ("Joint error e\n[mrad]", "Largest share\nof the bound [-]", "Joint torque\n[N m]")
-    ):
-        axes.set_ylabel(text)
+        column[2].set_ylim(-0.55, 0.55)
+    style.edges(grid, "Time [s]", ("Joint error e\n[mrad]", "Largest share\nof the bound [-]", "Joint torque\n[N m]"))
     for axes in grid[:, 1:].flat:
         axes.tick_params(labelleft=False)
     joints = {"joint 1": "-", "joint 2": "--", "joint 3": ":"}
@@ -123,28 +116,9 @@ def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) ->
 
 
 LAWS = (
-    *(
-        "letter_w",
-        "tuned",
-        "integrator",
-        "no_network",
-        "no_barrier",
-        "no_network_no_barrier",
-        "pd",
-        "pd_stiff",
-        "pd_tuned",
-        "pd_stiffest",
-    ),
-    *(
-        "printed",
-        "printed_forgetting",
-        "printed_no_robust",
-        "printed_sign",
-        "printed_gain",
-        "printed_robust",
-        "sign_only",
-        "sign_robust",
-    ),
+    *("letter_w", "tuned", "integrator", "no_network", "no_barrier", "no_network_no_barrier", "pd", "pd_stiff"),
+    *("pd_tuned", "pd_stiffest", "printed", "printed_forgetting", "printed_no_robust", "printed_sign"),
+    *("printed_gain", "printed_robust", "sign_only", "sign_robust"),
 )
 SENSITIVITY = (
     *("letter_w", "light_model", "heavy_model", "rough_paper", "near_edge", "outside", "encoders", "encoders_slow"),

@@ -58,10 +58,7 @@ def _draw_mechanism(recording: Recording) -> Drawing:
     grid[1, 0].plot(instants, total, **style.LINES["book"])
     grid[1, 0].plot(instants, frame["phase0"], **style.LINES["reference"])
     grid[1, 0].annotate("all features sum\nto the phase s", (0.95, 0.6), xycoords="axes fraction", ha="right")
-    for axes in grid[1]:
-        axes.set_xlabel("Time [s]")
-    for axes in grid[:, 0]:
-        axes.set_ylabel("[-]")
+    style.edges(grid, "Time [s]", "[-]")
     return style.title(
         figure, "Random images of the kernels join the old features; together they still sum to the phase"
     )
@@ -79,11 +76,8 @@ def _draw_cost(cost: pd.DataFrame, drift: pd.DataFrame) -> Drawing:
     right.legend()
     ratio = (cost.anew / cost["update"]).iloc[-1]
     lost = " and ".join(str(count) for count, part in drift.groupby("kernels") if part.gap.iloc[-1] > LOST)
-    return style.title(
-        figure,
-        f"The update costs up to {ratio:.0f} times less"
-        + (f"; with {lost} kernels it loses the solution" if lost else ""),
-    )
+    end = f"; with {lost} kernels it loses the solution" if lost else ""
+    return style.title(figure, f"The update costs up to {ratio:.0f} times less{end}")
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:

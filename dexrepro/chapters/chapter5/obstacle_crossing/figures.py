@@ -36,10 +36,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     if "default" not in recordings:
         return {}
     recording, found = recordings["default"], metrics["default"]
-    return {
-        "5.8": crossings(recording, found, config),
-        "5.C": changes(recording, found, config),
-    }
+    return {"5.8": crossings(recording, found, config), "5.C": changes(recording, found, config)}
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:

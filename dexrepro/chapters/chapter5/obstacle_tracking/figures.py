@@ -31,6 +31,7 @@ FIGURES = {
         "Share of the bound used over time, and clearance of the tip for every goal.",
     ),
 }
+UNITS = {"velocity_error": "rad/s", "desired": "rad", "error": "rad"}
 TABLES = {"T5.J": "Tracked crossings: clearance [cm], bound used, tip error [mm], distance from the goal [mm]"}
 FILM = Film(
     "film3", "The arm lifts the pen over three cubes and puts it down at the central goal.",

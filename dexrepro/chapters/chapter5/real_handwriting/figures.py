@@ -66,8 +66,7 @@ def _draw(recording: Recording, metrics: Metrics, config: Config) -> Drawing:
     right.set(ylim=(-0.7, len(order) - 0.3), xlabel="Draws ordered as printed [-]", xlim=(None, 1.01))
     right.set_yticks(range(len(order)), order, fontsize=5)
     right.legend(loc="lower right")
-    for axes, letter in zip((left, middle, right), "abc"):
-        style.panel(axes, letter)
+    style.panels((left, middle, right), "", "", "")
     share = {claim: f"{100 * (metrics.get(f'holds.{claim}') or 0):.0f} %" for claim in ("C5.06", "C5.07")}
     return style.title(
         figure,

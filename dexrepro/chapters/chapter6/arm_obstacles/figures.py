@@ -29,6 +29,10 @@ FIGURES = {
         "Five pictures of the arm among the boxes, and its distance to each over time, on the constrained path.",
     ),
 }
+UNITS = {
+    "distance_first": "m", "distance_second": "m", "distance_new": "m", "desired": "m", "reference": "m",
+    "projected": "1", "contact_first": "N", "contact_second": "N", "contact_new": "N",
+}  # fmt: skip
 TABLES = {"T6.Sc": "Variants of the detour, the law and the contacts on the arm"}
 FILM = Film(
     "constrained", "The constrained path takes the whole arm round the new, blue box.",

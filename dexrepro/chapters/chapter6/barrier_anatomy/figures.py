@@ -71,15 +71,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     d.plot([], [], "x", color=style.REFERENCE, markersize=4, label="stepped over the barrier")
     handles = dict(zip(*reversed(d.get_legend_handles_labels())))
     figure.legend(handles.values(), handles, loc="outside lower center", ncols=3, fontsize=8, columnspacing=1.5)
-    for letter, axes, text in zip(
-        "abcd", (a, b, c, d), ("who brakes", "gain $k_2$, no barrier", "margin", "time step")
-    ):
-        style.panel(axes, letter, text)
+    style.panels((a, b, c, d), "who brakes", "gain $k_2$, no barrier", "margin", "time step")
     gap = float(metrics["feedforward"]["half_gap_one"] or np.nan)
     power = int(np.floor(np.log10(gap)))
-    style.title(
-        figure,
-        "The printed barrier outweighs $k_2$ only where "
-        rf"$1 - (e/h)^2 < {style.at_most(gap / 10.0**power, 1)} \cdot 10^{{{power}}}$",
-    )
-    return {"6.B": figure}
+    near = rf"$1 - (e/h)^2 < {style.at_most(gap / 10.0**power, 1)} \cdot 10^{{{power}}}$"
+    return {"6.B": style.title(figure, f"The printed barrier outweighs $k_2$ only where {near}")}

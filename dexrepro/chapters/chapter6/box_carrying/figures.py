@@ -18,6 +18,7 @@ FIGURES = {
         "Pictures of the arms with the box, its distance from the hands and the palm forces, for two sets of paths.",
     ),
 }
+UNITS = {"palm_left": "N", "palm_right": "N", "middle": "m", "reference_left": "m", "reference_right": "m"}
 TABLES = {"T6.Sd": "Variants of law, squeeze and joint stiffness in carrying the box"}
 FILM = Film(
     "constrained", "Two arms carry the box between flat palms and put it down.",
@@ -48,9 +49,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     for row, (case, run) in enumerate(runs.items()):
         for i, name in enumerate(sorted(run.images)):
             axes = figure.add_subplot(grid[row, i])
-            style.photo(
-                axes, pictures[case, name], f"{case + ', ' if i == 0 else ''}{name.partition('_')[2]} s", fontsize=7
-            )
+            word = f"{case + ', ' if i == 0 else ''}{name.partition('_')[2]} s"
+            style.photo(axes, pictures[case, name], word, fontsize=7)
     left, right = (figure.add_subplot(graphs[k]) for k in (0, 1))
     for (case, run), line in zip(runs.items(), ("book", "plain")):
         gap = 100 * np.linalg.norm(run["box.pose"][:, :3] - run["middle"], axis=1)
@@ -65,5 +65,5 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     left.legend(loc="center right")
     kept, dropped = metrics["constrained"]["box_error_max"], metrics["original"]["lost_at"]
     late = f",\nalong the original ones it is lost {dropped:.1f} s after the start" if dropped else ""
-    style.title(figure, f"Along constrained paths the box strays {style.at_most(kept or 0.0, 1)} cm at most{late}")
-    return {"6.12": figure}
+    finding = f"Along constrained paths the box strays {style.at_most(kept or 0.0, 1)} cm at most{late}"
+    return {"6.12": style.title(figure, finding)}

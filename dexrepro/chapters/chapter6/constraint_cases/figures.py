@@ -19,6 +19,7 @@ FIGURES = {
         "Lyapunov functions and scaled errors over time for four constraint cases, and for (6.17) as printed.",
     ),
 }
+UNITS = {"error": "1", "rate": "1", "lyapunov": "1"}
 TABLES = {"T6.2": "alpha_2 and k_n of the four cases, and the worst dV^c/dt over random states"}
 SYMBOLS = {  # constraint, W in alpha_2 = (xdot^c - f1)/g1 - W/(d_z g1), B in k_n = k_2/d_z + k_z g1^2 B/(4 d_z^2)
     "asymmetric_inside": ("H_l < z1 < H_u", "-z1", "rho/(H_s^2 - z1^2)"),
@@ -57,23 +58,18 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         if not bound.inside and bound.lower is not None:
             close.plot(time, error / np.array(edges), label=label, **style.LINES[name])
     for axes in (right, close):
-        axes.axhline(1, **style.LINES["reference"])
-        axes.annotate("bound", (0.99, 1), xycoords=("axes fraction", "data"), fontsize=8, ha="right", va="top")
+        style.level(axes, 1, "bound", x=0.99)
+        axes.set_xlabel("Time [s]")
     inner.set(ylabel="$V^c(t)/V^c(0)$ [-]", yscale="log", ylim=(1e-6, 3), xlim=(-0.05, 1))
     outer.set(ylabel="$V^c(t)/V^c(0)$ [-]")
     right.set(ylabel="$|z_1|/H$ [-]", ylim=(0, None))
     close.set(ylabel="$|z_1|/H$ [-]", xlim=(0, 0.4), ylim=(0.99, 1.04))
-    for axes in (right, close):
-        axes.set_xlabel("Time [s]")
     parts = [axes.get_legend_handles_labels() for axes in (inner, outer, close)]
     found = {label: handle for handles, labels in parts for handle, label in zip(handles, labels)}
     figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=3)
-    style.panel(inner, "a", "V, inside")
-    style.panel(outer, "b", "V, outside")
-    style.panel(right, "c", "scaled error and bound")
-    style.panel(close, "d", "second asymmetric case, first 0.4 s")
+    texts = ("V, inside", "V, outside", "scaled error and bound", "second asymmetric case, first 0.4 s")
+    style.panels((inner, outer, right, close), *texts)
     hit = metrics.get("asymmetric_outside_printed", {}).get("hit_time")
     slow = f"outside V falls by {min(fallen):.1f} to {max(fallen):.1f} % in {config.duration:g} s" if fallen else ""
     late = f"; with (6.17) as printed the bound is hit after {hit:.2f} s" if hit else ""
-    style.title(figure, f"Under the corrected terms {slow}{late}")
-    return {"6.A": figure}
+    return {"6.A": style.title(figure, f"Under the corrected terms {slow}{late}")}

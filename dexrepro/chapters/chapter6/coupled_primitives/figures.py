@@ -6,6 +6,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Recordings
 
+UNITS = {"error": "cm (surface: N)", "goal_error": "cm"}
 TABLES = {"T6.1": "The coupled primitives of Table 6.1 with and without their coupling"}
 ROWS = {
     "obstacle": ("[16]", "acceleration", "smallest distance to a point [cm]"),

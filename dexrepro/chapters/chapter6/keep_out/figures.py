@@ -19,6 +19,7 @@ FIGURES = {
         "Paths of a reach with a still disk on its way, and distances to a disk that crosses it, under four laws each.",
     ),
 }
+UNITS = {"position": "cm", "centre": "cm", "distance": "cm"}
 TABLES = {"T6.C": "Laws that stay outside of a still and of a moving disk"}
 
 
@@ -26,17 +27,11 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     rows = []
     for case, numbers in metrics.items():
         c = config.cases[case]
-        rows.append(
-            {
-                "case": case,
-                "route": c.route,
-                "law": c.cdmp.law,
-                "smallest distance / radius": numbers["distance_share"],
-                "goal error [cm]": numbers["goal_error_worst"],
-                "first stepped over at [s]": numbers["stepped_over_at"],
-                "runs that stepped over": f"{numbers['stepped_over']} of {len(c.offsets)}",
-            }
-        )
+        rows.append({
+            "case": case, "route": c.route, "law": c.cdmp.law, "smallest distance / radius": numbers["distance_share"],
+            "goal error [cm]": numbers["goal_error_worst"], "first stepped over at [s]": numbers["stepped_over_at"],
+            "runs that stepped over": f"{numbers['stepped_over']} of {len(c.offsets)}",
+        })  # fmt: skip
     return {"T6.C": pd.DataFrame(rows)}
 
 
@@ -83,8 +78,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     )
     right.set(xlabel="Time [s]", ylabel="Distance to the centre [cm]", ylim=(0, 9.5))
     right.legend(loc="upper center", fontsize=6.5, ncols=2)
-    style.panel(left, "a", "still disk")
-    style.panel(right, "b", "disk that crosses the path")
+    style.panels((left, right), "still disk", "disk that crosses the path")
     outside = [metrics[case] for case in ("still_printed", "still_feedforward", "moving_outside")]
     over = sum(numbers["stepped_over"] or 0 for numbers in outside)
     total = sum(len(config.cases[case].offsets) for case in ("still_printed", "still_feedforward", "moving_outside"))

@@ -78,13 +78,10 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         d.plot(passed.index, passed, marker=".", **style.LINES[lines[case]])
     d.set(xlabel="Half-width of the bar [cm]", ylabel="Bars passed, of 5 [-]", ylim=(-0.2, 5.3))
     figure.legend(*a.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=6.5)
-    for letter, axes, text in zip(
-        "abcd", (a, b, c, d), ("past the triangle", "steering term", "point obstacle", "bars")
-    ):
-        style.panel(axes, letter, text)
+    style.panels((a, b, c, d), "past the triangle", "steering term", "point obstacle", "bars")
     near, width = (metrics["centroid"][f"{name}aligned_distance"] or 0 for name in ("", "nearly_")), 20
     best = max(metrics[case][f"bars_passed_{width}mm"] or 0 for case in ("centroid", "closest", "boundary"))
     tuned = max(metrics[case][f"bars_tuned_{width}mm"] or 0 for case in ("centroid", "closest", "boundary"))
     text = "Steering passes a point ahead at {:.2f} cm, beside it at {:.2f} cm".format(*near)
-    style.title(figure, f"{text}; it passes {best} of 5 bars of half-width {width} mm, tuned {tuned}")
-    return {"6.D": figure}
+    passes = f"{best} of 5 bars of half-width {width} mm, tuned {tuned}"
+    return {"6.D": style.title(figure, f"{text}; it passes {passes}")}

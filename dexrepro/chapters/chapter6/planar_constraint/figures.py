@@ -19,6 +19,7 @@ FIGURES = {
         "Paths, distances to the reference and Lyapunov functions for the readings of the law and two time constants.",
     ),
 }
+UNITS = {"position": "cm", "reference": "cm", "distance": "cm", "lyapunov": "1", "projected": "1"}
 TABLES = {
     "T6.A": "Laws on the planar map: largest distance, violations, projections, goal error, clearance",
     "T6.S": "Variants that decide whether the constraint is kept without projection",
@@ -63,7 +64,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     dashes = {**LINES, "H^2 weight": "extra3", "projected": "reference"}
     for (name, cases), (space, far, level) in zip(rows.items(), grid):
         shown = cases.pop("shown")
-        _draw_tube(space, recordings[shown], config.cases[shown], style)
+        _draw_tube(space, recordings[shown], config.cases[shown])
         space.set(ylabel=f"{name}\ny [cm]")
         for label, case in cases.items():
             if case in recordings:
@@ -91,7 +92,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     return {"6.2d": figure}
 
 
-def _draw_tube(axes: Any, run: Recording, settings: Config, style: Any) -> None:
+def _draw_tube(axes: Any, run: Recording, settings: Config) -> None:
     plane.draw_map(axes, settings)
     normal = np.gradient(run["reference"], axis=0)[:, ::-1] * [1, -1]
     normal /= np.linalg.norm(normal, axis=1, keepdims=True) + 1e-9

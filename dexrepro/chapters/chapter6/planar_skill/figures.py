@@ -59,7 +59,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         figures[identifier], axes = style.subplots(width=style.ONE_COLUMN, height=3.0)
         plane.draw_map(axes, settings)
         axes.set_ylabel("y [cm]")
-        text = _PANELS[identifier](axes, lines, numbers, settings, style)
+        text = _PANELS[identifier](axes, lines, numbers, settings)
         style.title(figures[identifier], text)
         handles = axes.get_legend_handles_labels()
         if handles[0]:
@@ -67,7 +67,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     return figures
 
 
-def _demonstrations(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any) -> str:
+def _demonstrations(axes: Any, lines: Any, numbers: Any, settings: Config) -> str:
     for i in range(settings.demonstrations.count):
         axes.plot(*lines[f"demonstration_{i}"].T, color=style.PLAIN, linewidth=0.6)
     if not settings.demonstrations.files:
@@ -76,20 +76,20 @@ def _demonstrations(axes: Any, lines: Any, numbers: Any, settings: Config, style
     return "The new block lies across the\ndemonstrated paths"
 
 
-def _learned(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any) -> str:
+def _learned(axes: Any, lines: Any, numbers: Any, settings: Config) -> str:
     axes.plot(*lines["first"].T, color=style.BOOK, label="sub-skill 1")
     axes.plot(*lines["second"].T, color=style.EXTRA[0], linestyle="-.", label="sub-skill 2")
     return f"The learned path cuts {-numbers['clearance_new_max']:.2f} cm or more\ninto the new block"
 
 
-def _spline(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any) -> str:
+def _spline(axes: Any, lines: Any, numbers: Any, settings: Config) -> str:
     axes.plot(*lines["first"].T, color=style.BOOK, label="sub-skill 1")
     axes.plot(*lines["reference"].T, color="black", linewidth=0.8, label="spline")
     axes.plot(*lines["reserved"].T, color=style.EXTRA[0], linestyle="-.", label="kept of sub-skill 2")
     return f"The spline reference clears everything\nby {numbers['clearance_reference_min']:.2f} cm"
 
 
-def _extended(axes: Any, lines: Any, numbers: Any, settings: Config, style: Any) -> str:
+def _extended(axes: Any, lines: Any, numbers: Any, settings: Config) -> str:
     old, block = plane.obstacles(settings)
     axes.set(
         xlim=(min(0.0, lines["extended_1"][:, 0].min() - 0.5), 20), ylim=(0, lines["extended_1"][:, 1].max() + 0.5)

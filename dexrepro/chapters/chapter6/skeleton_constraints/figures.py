@@ -46,6 +46,7 @@ FIGURES = {
         "Hand distance over time, constrained and original, with its margin.",
     ),
 }
+UNITS = {"truth": "cm", "original": "cm", "joints": "cm"}
 TABLES = {
     "T6.B": "Error of the joints to the truth, original and constrained, largest of the groups",
     "T6.Sb": "Variants of noise, law and stages of the two-hand calculation",
@@ -181,10 +182,7 @@ def _draw_paths(run: Recording, settings: Config) -> Drawing:
                 axes.plot(*arm.T, dashes, color=colour, linewidth=1.3)
         axes.set(aspect="equal")
         style.panel(axes, letter, f"{run.time[index]:.1f} s")
-    for axes in panels[1]:
-        axes.set_xlabel("x [cm]")
-    for axes in panels[:, 0]:
-        axes.set_ylabel("z [cm]")
+    style.edges(panels, "x [cm]", "z [cm]")
     dark = {"color": "black"}
     names = {"left": {"color": style.BOOK}, "right": {"color": style.EXTRA[0]}, "constrained": dark,
              "original": {**dark, "linestyle": ":"}}  # fmt: skip
@@ -205,9 +203,8 @@ def _draw_lengths(run: Recording, numbers: Metrics, settings: Config) -> Drawing
             text = {"se": "shoulder-elbow", "ew": "elbow-wrist"}[link]
             axes.plot(run.time, found["joints"][link][:, side], color=colour, label=f"{text}, constrained")
             axes.plot(run.time, found["original"][link][:, side], "--", color=colour, label=f"{text}, original")
-        axes.set_xlabel("Time [s]")
         style.panel(axes, letter, f"{SIDES[side]} arm")
-    panels[0].set_ylabel("Link length [cm]")
+    style.edges(panels, "Time [s]", "Link length [cm]")
     panels[1].legend(loc="upper right")
     kept, lost = numbers["length_error_constrained"], numbers["length_error_original"]
     within = style.at_most(kept or 0.0, 2)

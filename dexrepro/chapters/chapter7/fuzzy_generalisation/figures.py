@@ -22,6 +22,10 @@ FIGURES = {
         "Paths to a new goal past a new obstacle in three directions, and by how much the directions between clear it.",
     ),
 }
+UNITS = {
+    "old": "cm", "new": "cm", "height": "cm", "between": "cm", "chosen": "cm", "stiffness": "1",
+    "stiffness_fuzzy": "1", "stiffness_truth": "1", "stiffness_low": "1", "stiffness_tall": "1",
+}  # fmt: skip
 TABLES = {"T7.9": "Clearance of the generalised reactions in the new task", "T7.S": "Choices that turn a verdict"}
 
 

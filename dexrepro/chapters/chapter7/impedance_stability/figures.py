@@ -22,6 +22,10 @@ FIGURES = {
         "Spectral radius and measured torque travel against the gain, and V over time, logarithmic.",
     ),
 }
+UNITS = {
+    "reference": "rad", "planned": "m", "filtered_error": "rad/s", "impedance": "N m s/rad", "stiffness": "1",
+    "lyapunov": "J",
+}  # fmt: skip
 TABLES = {"T7.B": "Stability against gain, period and model, predicted and measured"}
 
 
@@ -36,13 +40,10 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     fall = figure.add_subplot(axes[0, 0].get_gridspec()[:, 1])
     values = np.array([[gain, m["predicted_radius"], m["torque_travel"] or np.nan] for gain, m in rows])
     bound.plot(values[:, 0], values[:, 1], marker=".", **style.LINES["book"])
-    bound.axhline(1.0, **style.LINES["reference"])
     bound.set(ylabel="Spectral radius [-]", ylim=(0.6, 1.6))
-    bound.annotate("stability limit", (0.98, 1.0), xycoords=("axes fraction", "data"), ha="right", va="top", fontsize=8)
+    style.level(bound, 1.0, "stability limit")
     travel.semilogy(values[:, 0], values[:, 2], "o", color=style.BOOK, markersize=4)
-    travel.axhline(CHATTER, **style.LINES["reference"])
-    travel.annotate(f"chatter: above {CHATTER:g} N m", (0.98, CHATTER), xycoords=("axes fraction", "data"), ha="right",
-                    va="top", fontsize=8)  # fmt: skip
+    style.level(travel, CHATTER, f"chatter: above {CHATTER:g} N m")
     travel.set(xlabel="Gain $k_s$ [N m s/rad]", ylabel="Torque travel\na joint [N m]", ylim=(0.05, 1e4))
     travel.set_yticks((0.1, 10, 1000))
     for panel in (bound, travel):
@@ -50,8 +51,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     bound.annotate(
         "printed", (config.printed_gain, 1.5), xytext=(3, 0), textcoords="offset points", va="top", fontsize=8
     )
-    style.panel(bound, "a", "predicted along the path")
-    style.panel(travel, "b", "measured")
+    style.panels((bound, travel, fall), "predicted along the path", "measured", "V after an initial error")
     for case, line, label in (
         ("displaced_printed", "printed", "as printed"),
         ("displaced_no_estimation", "plain", "without estimation"),
@@ -60,19 +60,16 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         if case in recordings:
             value = recordings[case]["lyapunov"]
             fall.semilogy(1e3 * recordings[case].time, value / value[0], label=label, **style.LINES[line])
-    fall.axhline(FLOOR, **style.LINES["reference"])
-    fall.annotate("judged down to here", (0.98, FLOOR), xycoords=("axes fraction", "data"), ha="right", va="bottom",
-                  fontsize=8)  # fmt: skip
+    style.level(fall, FLOOR, "judged down to here", "bottom")
     fall.set(xlabel="Time [ms]", ylabel="V / V(0) [-]", xlim=(0, 200), ylim=(1e-9, 1e3))
     fall.legend(fontsize=8)
-    style.panel(fall, "c", "V after an initial error")
     limits = metrics["summary"]
     measured, predicted = (
         " and ".join(f"{limits[f'{kind}_{side}']:g}" for side in ("stable", "unstable") if limits[f"{kind}_{side}"])
         for kind in ("measured", "predicted")
     )
-    style.title(figure, f"The loop turns unstable between $k_s$ = {measured}, predicted between {predicted}")
-    return {"7.B": figure}
+    finding = f"The loop turns unstable between $k_s$ = {measured}, predicted between {predicted}"
+    return {"7.B": style.title(figure, finding)}
 
 
 def tabulate(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> dict[str, pd.DataFrame]:

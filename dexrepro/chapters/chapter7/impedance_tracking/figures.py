@@ -28,6 +28,10 @@ FIGURES = {
         "Torques of three joints, planned and real path, and the error of the tip with and without estimation.",
     ),
 }
+UNITS = {
+    "reference": "rad", "planned": "m", "filtered_error": "rad/s", "impedance": "N m s/rad", "stiffness": "1",
+    "modelled": "N m", "push": "N",
+}  # fmt: skip
 TABLES = {"T7.C": "Tracking under the compared laws"}
 FILM = Film(
     "muscle", "The arm carries the cube past the stack; its tip stays within micrometres of the plan.", desk.CAMERA,
@@ -45,12 +49,10 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def draw_pictures(recording: Recording) -> Drawing:
-    images = style.trimmed(recording.images)
     words = {"a": "grasp", "f": "release"}
     figure, axes = style.subplots(2, 3, height=4.6)
-    for (letter, instant), panel in zip(PICTURES.items(), axes.flat):
-        style.photo(panel, images[letter])
-        style.panel(panel, letter, f"{words.get(letter, 'transport')}, {instant:g} s")
+    titles = {k: f"({k}) {words.get(k, 'transport')}, {instant:g} s" for k, instant in PICTURES.items()}
+    style.photos(axes.flat, recording.images, titles)
     return style.title(figure, "The arm carries the cube past the stack (simulated)")
 
 

@@ -19,6 +19,10 @@ FIGURES = {
         "Contact force, a push and the deviations under three pushes, for four impedances with and without estimation.",
     ),
 }
+UNITS = {
+    "reference": "rad", "planned": "m", "filtered_error": "rad/s", "impedance": "N m s/rad", "stiffness": "1",
+    "contact": "N", "predicted": "mm", "push": "N",
+}  # fmt: skip
 TABLES = {"T7.D": "Contact and pushes under constant and variable impedance"}
 
 
@@ -58,10 +62,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     bars.set_ylim(top=2.2 * bars.get_ylim()[1])
     bars.plot([], [], ".", color="k", markersize=3, label="with estimation")
     bars.legend(fontsize=6.5, loc="upper right", handlelength=1.0, borderpad=0.0)
-    for letter, panel, text in zip(
-        "abc", (contact, push, bars), ("contact with the stack", f"push of {config.push_force:g} N", "pushes")
-    ):
-        style.panel(panel, letter, text)
+    style.panels((contact, push, bars), "contact with the stack", f"push of {config.push_force:g} N", "pushes")
     most = {
         end: max(
             float(metrics[case][f"{when}_push"] or 0.0) for case in metrics if case in cases for when in config.pushes

@@ -39,6 +39,9 @@ FIGURES = {
         "Muscle stiffness over time for four obstacles, by direction, with the ordinary one.",
     ),
 }
+UNITS = {
+    "ordinary": "cm", "reactions": "cm", "learned": "cm", "stiffness": "1", "traces": "1", "learned_stiffness": "1",
+}  # fmt: skip
 TABLES = {"T7.1": "Factors and experimental conditions, completed, with what the demonstrations do"}
 
 
@@ -56,13 +59,10 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 
 def draw_pictures(images: Mapping[str, Any]) -> Drawings:
-    shown = style.trimmed({name: image for name, image in images.items() if name != "platform"})
     platform = style.picture(images["platform"], "Arm, board and obstacle (simulated)")
     figure, panels = style.subplots(1, 4, height=1.7)
-    words = ("start", "move away", "cross over", "reach the target")
-    for letter, word, panel in zip("abcd", words, panels):
-        style.photo(panel, shown[letter])
-        style.panel(panel, letter, word)
+    words = {"a": "(a) start", "b": "(b) move away", "c": "(c) cross over", "d": "(d) reach the target"}
+    style.photos(panels, {name: image for name, image in images.items() if name != "platform"}, words)
     style.title(figure, "The person leads the arm over the tall obstacle (simulated)")
     return {"7.4": platform, "7.5": figure}
 
@@ -135,10 +135,7 @@ def draw_stiffness(recording: Recording, found: Mapping[str, Any], config: Confi
     axes[0, 0].plot([], [], label="no obstacle", **style.LINES["reference"])
     pictures.name_directions(axes[0, 0])
     axes[0, 0].set_ylim(0.02, 0.15)
-    for panel in axes[1]:
-        panel.set_xlabel("Time [s]")
-    for panel in axes[:, 0]:
-        panel.set_ylabel("Stiffness $X^{stf}$ [-]")
+    style.edges(axes, "Time [s]", "Stiffness $X^{stf}$ [-]")
     earlier = min(found[f"half_rise_far_{height}"] - found[f"half_rise_close_{height}"] for height in ("low", "tall"))
     return style.title(
         figure,

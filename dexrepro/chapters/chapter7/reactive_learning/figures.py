@@ -22,6 +22,7 @@ FIGURES = {
         "Learned and demonstrated reactions for three numbers of groups, and their error over the number of groups.",
     ),
 }
+UNITS = {"ordinary": "cm", "groups": "cm", "demonstrations": "cm"}
 TABLES = {"T7.2": "Learning the reactions to the low, close obstacle"}
 
 

@@ -42,13 +42,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
                                    textcoords="offset points", fontsize=7, ha="center")  # fmt: skip
     for letter, panel, text in zip("ab", axes, ("a set of each coordinate", "one set for all coordinates")):
         panel.axhline(10 * numbers["spread"], label="spread of repetitions", **style.LINES["reference"])
-        panel.set(
-            xlabel="Style parameters R [-]",
-            ylabel="RMS error [mm]",
-            ylim=(0.1, 300),
-            xlim=(0.6, 6.4),
-            xticks=range(1, 7),
-        )
+        panel.set(xlabel="Style parameters R [-]", ylabel="RMS error [mm]", ylim=(0.1, 300), xlim=(0.6, 6.4))
+        panel.set_xticks(range(1, 7))
         style.panel(panel, letter, text)
     axes[0].plot([], [], "k", linestyle="none", marker="$n$", markersize=4, label="number that touch")
     axes[0].legend(loc="upper right", fontsize=6.5)

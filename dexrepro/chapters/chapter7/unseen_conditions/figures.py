@@ -42,13 +42,12 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     for place, method in zip(places, METHODS):
         one.plot(place + np.linspace(-0.2, 0.2, len(left_out)), left_out[method], ".", color="k", markersize=2.5)
     many.bar(places - 0.2, [values[f"unseen_{m}"] for m in METHODS], 0.38, color=colours)
-    touch = many.twinx()
-    touch.spines["right"].set_visible(True)
+    touch = style.twin(many, "Touch the obstacle [%] (hatched)")
     touch.bar(places + 0.2, [100 * values[f"touches_{m}"] for m in METHODS], 0.38, color=colours, hatch="///",
               edgecolor="w", linewidth=0)  # fmt: skip
     touch.axhline(100 * values["touches_person"], label="the person (touches)", **style.LINES["reference"])
     touch.legend(loc="upper left")
-    touch.set(ylabel="Touch the obstacle [%] (hatched)", ylim=(0, 100))
+    touch.set_ylim(0, 100)
     for letter, panel, text in zip(
         "ab", (one, many), ("leave one out", f"{values['unseen_count']:.0f} unseen conditions")
     ):
@@ -59,8 +58,8 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         f"{10 * values[f'unseen_{name}']:.1f} mm, {values[f'touches_{name}']:.0%} touch"
         for name in ("fuzzy", "nearest")
     )
-    style.title(figure, f"Unseen conditions: fuzzy rules err by {fuzzy}; the nearest demonstration by {nearest}")
-    return {"7.C": figure}
+    finding = f"Unseen conditions: fuzzy rules err by {fuzzy}; the nearest demonstration by {nearest}"
+    return {"7.C": style.title(figure, finding)}
 
 
 def tabulate(recordings: Recordings, metrics: Mapping[str, Any], config: Config) -> dict[str, pd.DataFrame]:

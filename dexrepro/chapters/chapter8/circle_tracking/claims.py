@@ -8,11 +8,8 @@ CIRCLE = "circle_tracking"
 
 
 def _better(case: str, rival: str, part: str = "early") -> Predicate:
-    """The error of a case from 5 to 10 s ("rms": to the end of the revolution) is below its rival's on both axes.
-
-    By at least 1 %: less than that is a tie.
-    """
-    return every(*(less(f"{CIRCLE}.{case}.{part}_{axis}", f"{CIRCLE}.{rival}.{part}_{axis}", 0.99) for axis in "xy"))
+    """The error of a case from 5 to 10 s ("rms": to the end of the revolution) is below its rival's on both axes."""
+    return every(*(less(f"{CIRCLE}.{case}.{part}_{axis}", f"{CIRCLE}.{rival}.{part}_{axis}") for axis in "xy"))
 
 
 def _inside(*cases: str) -> Predicate:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -41,6 +40,7 @@ FIGURES = {
         "Markers of grown, fixed and constant networks in the plane of adaptation gain and error, both logarithmic.",
     ),
 }
+UNITS = {"reference": "m", "error": "m", "nodes": "1", "network_force": "N", "feature_power": "1"}
 TABLES = {
     "T8.1": "Parameters of the two-link arm and its controller",
     "T8.A": "Circle tracking: every network and H-infinity design",
@@ -52,7 +52,7 @@ THRESHOLDS = ("broad", "broad_2", "broad_3")
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    figures: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
+    figures = {
         "8.4": (_draw_centres, THRESHOLDS),
         "8.6": (_draw_tracking, ("broad", "fuzzy", "broad_unit", "fuzzy_unit")),
         "8.7": (_draw_nodes, THRESHOLDS),
@@ -62,11 +62,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
         ),
         "8.A": (_draw_gains, ("broad", "fuzzy", "fuzzy_matched", "node")),
     }
-    return {
-        identifier: function(recordings, metrics, config)
-        for identifier, (function, cases) in figures.items()
-        if all(case in recordings for case in cases)
-    }
+    return style.drawn(figures, recordings, metrics, config)
 
 
 def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Drawing:
@@ -92,8 +88,7 @@ def _draw_tracking(recordings: Any, metrics: Any, config: Config) -> Drawing:
         for axes in column:
             axes.set_xlabel("Time [s]")
     names = ("Path", "Transient, tuned rates", "Steady error, rate 1 as printed", "Steady error, tuned rates")
-    for letter, axes, name in zip("abcd", grid[:, 0], names):
-        style.panel(axes, letter, name)
+    style.panels(grid[:, 0], *names)
     figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     ratio = metrics["summary"]["ratio_tuned_x"] if "summary" in metrics else float("nan")
     unit = metrics["summary"]["ratio_unit_x"] if "summary" in metrics else float("nan")
@@ -153,10 +148,8 @@ def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) 
         for row, label in enumerate((f"${letter}$ [m]", f"$e_{letter}$ [mm]", f"$e_{letter}$ [mm]")):
             column[row].set_ylabel(label)
         column[2].set(xlabel="Time [s]", xlim=(0, config.duration))
-    for letter, axes, name in zip("abc", grid[:, 0], ("Path", "Error; shaded: bound of the networks", "Closer")):
-        style.panel(axes, letter, name)
-    handles, labels = grid[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=6)
+    style.panels(grid[:, 0], "Path", "Error; shaded: bound of the networks", "Closer")
+    figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=6)
     errors = "; ".join(f"{label} {metrics[case]['early_x']:.2g}" for case, (label, _) in lines.items())
     return style.title(
         figure, f"RMS error in x under friction, {config.settled:g} to {config.early:g} s [mm]: {errors}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -39,6 +38,9 @@ FIGURES = {
         "Final compression over the stiffness of the sponge under the optimal gain and under the regulator.",
     ),
 }
+UNITS = {
+    "sponge_force": "N", "reference": "m", "path": "m", "error": "m", "nodes": "1", "gain": "N/m, N", "phase": "1",
+}  # fmt: skip
 TABLES = {
     "T8.E": "Sponge: every method and variant",
     "T8.F": "Algorithm 8.1: iterates of the policy iteration on the sponge",
@@ -59,17 +61,13 @@ LINES = {
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    figures: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
+    figures = {
         "8.12": (_draw_pictures, ("learned",)),
         "8.13": (_draw_tracking, tuple(LINES)),
         "8.14": (_draw_gain, ("learned", "lqr")),
         "8.C": (_draw_stiffness, ("learned", "lqr")),
     }
-    return {
-        identifier: function(recordings, metrics, config)
-        for identifier, (function, cases) in figures.items()
-        if all(case in recordings for case in cases)
-    }
+    return style.drawn(figures, recordings, metrics, config)
 
 
 def _draw_pictures(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -115,8 +113,7 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     aside.legend(loc="upper right")
     style.panel(aside, "a, b", "Across the path")
     surface = config.sponge.surface
-    depth.set(xlim=(0, config.duration), ylabel="$z$ [m]")
-    depth.set(ylim=(0.04, 0.15), xlabel="Time [s]")
+    depth.set(xlim=(0, config.duration), ylim=(0.04, 0.15), xlabel="Time [s]", ylabel="$z$ [m]")
     depth.axhline(surface, color="#7A5C1E", linewidth=0.6)
     depth.annotate("sponge, relaxed", (17.8, surface + 0.001), fontsize=6.5, color="#7A5C1E", ha="right", va="bottom")
     drawings.phases(depth, learned)

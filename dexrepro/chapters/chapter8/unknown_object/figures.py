@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -46,6 +45,10 @@ FIGURES = {
         "Learned gain and optimum over the stiffness of the object, their difference, and the effect of noise.",
     ),
 }
+UNITS = {
+    "object": "N", "reference": "m", "reference_speed": "m/s", "path": "m", "error": "m", "gain": "N/m, N",
+    "phase": "1", "desired_force": "N",
+}  # fmt: skip
 TABLES = {
     "T8.2": "Algorithm 8.1: iterates of the policy iteration on the unknown object",
     "T8.B": "Contact with the unknown object: every method",
@@ -65,18 +68,14 @@ METHODS = {
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
-    figures: dict[str, tuple[Callable[..., Any], tuple[str, ...]]] = {
+    figures = {
         "8.2": (_draw_transfer, ("soft",)),
         "8.9": (_draw_scene, ("soft",)),
         "8.10": (_draw_contact, (*METHODS, "static_soft", "static_abrupt")),
         "8.11": (_draw_gain, ("soft", "lqr")),
         "8.B": (_draw_objects, ("soft", "object_5", "object_1000")),
     }
-    return {
-        identifier: function(recordings, metrics, config)
-        for identifier, (function, cases) in figures.items()
-        if all(case in recordings for case in cases)
-    }
+    return style.drawn(figures, recordings, metrics, config)
 
 
 def _cost(config: Config) -> InteractionCost:
@@ -185,8 +184,7 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
     grid[1, 0].set_xlabel("Time [s]")
     grid[1, 1].set_xlabel("Iteration $m$ [-]")
     grid[0, 0].legend(loc="center left", fontsize=6.5)
-    style.panel(grid[0, 0], "a", "Gain in use")
-    style.panel(grid[0, 1], "b", "Iterates of the policy iteration")
+    style.panels(grid[0], "Gain in use", "Iterates of the policy iteration")
     digits, seconds = metrics["soft"]["digits"], np.ptp(soft.time[soft["phase"] == EXPLORING])
     return style.title(
         figure, f"{len(steps)} iterations on {seconds:.0f} s of contact find the optimum to {digits:.1f} digits"
@@ -222,8 +220,7 @@ def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawi
         row[2].loglog(noise.noise, spread, marker=marker, markersize=4, label=f"$K_{key}$", **style.LINES[line])
     row[2].set(xlabel="Force noise, rms [N]", ylabel="Spread of the gain [%]")
     row[2].legend()
-    for letter, axes, name in zip("abc", row, ("Learned; dashed: optimum", "Distance from it", "Under sensor noise")):
-        style.panel(axes, letter, name)
+    style.panels(row, "Learned; dashed: optimum", "Distance from it", "Under sensor noise")
     worst = 100.0 * (metrics.get("summary", {}).get("worst_gain_error") or float("nan"))
     return style.title(
         figure,

@@ -35,8 +35,7 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
     plan.set_adjustable("datalim")
     error.set(xlabel="Time [s]", ylabel="Distance [mm]")
     force.set(xlabel="Time [s]", ylabel="Force along the line [N]")
-    for axes, letter, text in zip((plan, error, force), "abc", ("path", "off leader + offset", "force")):
-        style.panel(axes, letter, text)
+    style.panels((plan, error, force), "path", "off leader + offset", "force")
     figure.legend(loc="outside lower center", ncols=5)
     best = {
         f"{text}, {scale * min(values.values()):.3g} {unit} RMS": min(values, key=lambda name: values[name])
