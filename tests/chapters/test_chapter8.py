@@ -17,6 +17,7 @@ from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.barrier_tracking import barrier_terms
 from dexrepro.control.impedance_learning import ConstantGain
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, optimal_gain
+from dexrepro.experiment import Config
 from dexrepro.physics.loop import Diverged
 
 CASES = {name: experiment_cases(compose_chapter("8"), name) for name in ("circle_tracking", "unknown_object", "sponge")}
@@ -167,11 +168,13 @@ def test_claims_and_errata_speak_of_cases_that_exist():
 def test_a_variant_that_turns_a_comparison_around_is_marked():
     metrics = {"a": {"m": 1.0}, "b": {"m": 2.0}, "c": {"m": 3.0}}
     table = sensitivity_table(
-        [Variant("X", "one", "m", ("c", "b"), ("a", "b")), Variant("X", "two", "m", ("b", "c"), ("a", 1.5))],
+        [Variant("X", "gain {0.gain}", "m", ("c", "b"), ("a", "b")), Variant("X", "two", "m", ("b", "c"), ("a", 1.5))],
         metrics,
         {"m": "error [mm]"},
+        Config.of({"cases": {"c": {"gain": 5}}}),
     )
     assert list(table["verdict changes"]) == ["yes", "no"]
+    assert list(table["variant"]) == ["gain 5", "two"]
     assert list(table["quantity"]) == ["error [mm]", "error [mm]"]
 
 
