@@ -77,7 +77,10 @@ class Pool:
         tick: Callable[[], None] | None = None,
     ) -> None:
         self.size, self.report, self.here, self.tick = workers or available_cores(), report, here, tick
-        self._context = multiprocessing.get_context(start_method())
+        method = start_method()
+        if multiprocessing.get_start_method(allow_none=True) not in (None, *multiprocessing.get_all_start_methods()):
+            multiprocessing.set_start_method(method, force=True)  # joblib's own is unknown to what is spawned
+        self._context = multiprocessing.get_context(method)
         self._tasks: deque[_Task] = deque()
         self._workers: list[_Worker] = []
 

@@ -1,10 +1,13 @@
 """The manual, by ``make docs``. Sphinx: the docstrings use its roles, it runs the notebooks, and it will be kept up."""
 
+import os
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE.parent), str(HERE)]
+# What the tutorials run as a command is that of this environment, whether or not it is activated.
+os.environ["PATH"] = os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", "")))
 
 import generated  # noqa: E402
 

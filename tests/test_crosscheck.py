@@ -46,7 +46,8 @@ def test_an_engine_that_there_is_not_is_refused(monkeypatch):
         plan("engine=mujoco")
 
 
-def test_where_pybullet_is_missing_the_book_is_simulated_by_mujoco(monkeypatch, capsys):
+def test_where_pybullet_is_missing_the_book_is_simulated_by_mujoco(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
     for place in ("dexrepro.config.is_installed", "dexrepro.physics.engine.is_installed"):
         monkeypatch.setattr(place, lambda word: word == "mujoco")
     arms, _ = plan()
