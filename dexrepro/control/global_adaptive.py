@@ -29,7 +29,7 @@ class Kinematics(Protocol):
 class Switch:
     """E(Xi), Eq. (4.26): 1 where every |Xi_k| < inner, 0 where one is > outer, continuous between.
 
-    shape: omega; E <= 1 needs shape >= 0.638, or >= 2 with ``square_outside``. square_outside: take the square of the
+    shape: omega; E <= 1 needs shape >= 0.6382, or >= 2 with ``square_outside``. square_outside: take the square of the
     exponential instead of the square of its argument, the other way to read the print. node_scaled: inner and outer
     are the book's epsilon_a and epsilon_b, multiples of the radius of the node farthest from the origin.
     """
