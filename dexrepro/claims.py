@@ -44,6 +44,10 @@ TIE = 0.01
 the larger; a tie does not hold, in a claim, its control, its printed form and its readings alike."""
 
 
+STOPPED = "a run is stopped at its bound, so that 1 says that it was met and is no measured number"
+"""Why claims turn about the bound at which a run ends."""
+
+
 def _relative_gap(smaller: float, larger: float) -> float:
     scale = max(abs(smaller), abs(larger))
     return (larger - smaller) / scale if scale > 0 else 0.0
@@ -150,6 +154,7 @@ class Evaluation:
     searched: str
     by_construction: str
     reason: str
+    turns: str
     note: str
 
     def as_dict(self) -> dict[str, Any]:
@@ -173,6 +178,8 @@ class Claim:
         all agree with the predicate the verdict is "reading-dependent". searched: over which choices of ours a failure
         was searched before it stands.
     by_construction: the generator that has the effect built in. not_testable: why nothing can be measured.
+    turns: why it is no doubt of the verdict that a predicate turns within the stored tolerances of its numbers (""
+        where none does).
     note: what a reader must know beside the verdict; ``{experiment.case.metric:.3g}`` in it is filled from the run, a
         parameter ``{experiment.key}`` or ``{experiment.cases.case.key}`` from its configuration; ``{.case.metric}`` is
         one of the claim's own experiment.
@@ -192,6 +199,7 @@ class Claim:
     searched: str = ""
     by_construction: str = ""
     not_testable: str = ""
+    turns: str = ""
     note: str = ""
     where: str = ""
     beside: str = ""
@@ -247,6 +255,7 @@ class Claim:
             searched=self.searched,
             by_construction=self.by_construction,
             reason=self.not_testable,
+            turns=self.turns,
             note=filled(self.note, {**settings, **metrics}),
         )
 

@@ -99,6 +99,7 @@ CLAIMS = (
         "C1.32",
         "The win survives an object twice as stiff.",
         less(f"{HOLDING}.t1_proposed_stiff.rmse", f"{HOLDING}.t1_passive_stiff.rmse"),
+        turns="on a stiff object the law goes on oscillating, and how far follows the smallest change of the start",
     ),
     ours_1_18(
         "C1.33",

@@ -93,6 +93,7 @@ CLAIMS = (
         source="ours",
         note="A joint comes to its limit in these runs: the smallest change of the start may move a "
         "peak by more than the difference.",
+        turns="a free tool axis meets a joint limit, where the smallest change decides how far the arm goes",
     ),
     fig_3_12(
         "C3.11",

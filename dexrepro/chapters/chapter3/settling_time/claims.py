@@ -45,6 +45,7 @@ CLAIMS = (
         note="From 1 rad the printed gains ask for {.printed.torque_1:.0f} N m; within the limits the arm settles in "
         "{.limited.settling_1:.3g} s from 1 rad and in {.limited.settling_10:.3g} s from 10 rad (?: not within the "
         "run). What the law adds for the rate of the virtual velocity is taken to be delivered.",
+        turns="from a perturbed start it does not settle within the run, by which the tolerance exceeds the number",
     ),
     fig_3_a(
         "C3.15",

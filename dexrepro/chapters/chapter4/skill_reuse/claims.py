@@ -82,6 +82,7 @@ CLAIMS = (
         note="Increment of the torque in 10 ms: {.broad20.torque_increment_nm:.2f} N m against "
         "{.rbf10.torque_increment_nm:.2f} N m of width 10 at equal effective gain and "
         "{.common_rbf10.torque_increment_nm:.2f} N m with one gain for all.",
+        turns="its rivals chatter, and a tolerance is ten times the change seen, at which it does not turn",
     ),
     fig_4_6(
         "C4.03b",
@@ -217,6 +218,7 @@ CLAIMS = (
         note="The gain lies in the transient; the steady errors are {.broad20.steady_rmse_mm:.2f} and "
         "{.zero20.steady_rmse_mm:.2f} mm. The control is what one constant node carries over: a tie, "
         "{.constant.rmse_mm:.1f} against {.constant_zero.rmse_mm:.1f} mm over the run.",
+        turns="the control ties in both errors; all three numbers at the ends of their tolerances would pass it",
     ),
     fig_4_5(
         "C4.14",

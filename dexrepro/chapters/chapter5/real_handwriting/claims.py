@@ -27,6 +27,7 @@ CLAIMS = (
         note="In more than 90 % of the draws, as C5.30 asks, on {.default.holds.C5.30:.0%} of the shapes, and in "
         "{.default.n20.ordered.least:.0%} on the worst. Smoothed at {.cases.rough.hand.cutoff:g} Hz instead of "
         "{.hand.cutoff:g} it holds on {.rough.holds.C5.30:.0%}.",
+        turns="a share of shapes equals its bound, which is not more; a count is exact",
     ),
     ours_5_h(
         "C5.41",

@@ -149,6 +149,7 @@ CLAIMS = (
         note="The path rides the barrier, at {.tau1_feedforward_h2.e_share:.4f} of the tube; the "
         "literal law (6.15) with that weight leaves it at steps of 1 ms in "
         "{.tau1_printed_h2.violated_groups:.0f} groups of six, which is a matter of sampling.",
+        turns="the path rides the barrier, which keeps it inside by less than any tolerance; no group violates",
     ),
     fig_6_2d(
         "C6.39",

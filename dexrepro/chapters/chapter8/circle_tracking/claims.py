@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, Reference, about, every, less, ordered
+from dexrepro.claims import STOPPED, Claim, Predicate, Reference, about, every, less, ordered
 
 CIRCLE = "circle_tracking"
 
@@ -45,6 +45,7 @@ CLAIMS = (
         note="The control is a network that does not cover the path: its bound is violated at "
         "{.orbit_left_fuzzy.violated_at:.3f} s. Elbow-up. Elbow-down with rate 1 it holds only for a "
         "sampling time far below {.step:g} s (E8.01).",
+        turns=STOPPED,
     ),
     fig_8_6(
         "C8.02",
@@ -193,6 +194,7 @@ CLAIMS = (
         "{.orbit_left_fuzzy.violated_at:.3f} and {.orbit_high_fuzzy.violated_at:.3f} s, the broad one errs by "
         "{.orbit_left_broad.early_y:.2f} and {.orbit_high_broad.early_y:.2f} mm in y, one constant node, which has no "
         "structure, by {.orbit_left_node.early_y:.2f} and {.orbit_high_node.early_y:.2f} mm.",
+        turns=STOPPED,
     ),
     fig_8_8(
         "C8.21",
@@ -204,6 +206,7 @@ CLAIMS = (
         note="With joint friction and rate 1, where the networks do next to nothing: without the barrier the bound is "
         "violated at {.friction_no_barrier.violated_at:.1f} s. Without friction the error stays inside "
         "without a barrier, too ({.no_barrier.max_y:.1f} of 10 mm in y).",
+        turns=STOPPED,
     ),
 )
 REFERENCES = (Reference(f"{CIRCLE}.fuzzy.nodes", 99, "8.4.1"),)

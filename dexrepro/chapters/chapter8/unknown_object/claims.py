@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dexrepro.claims import Claim, Predicate, about, every, greater, less
+from dexrepro.claims import STOPPED, Claim, Predicate, about, every, greater, less
 
 OBJECT = "unknown_object"
 EXPLORATION = 8 * 0.05  # N/s; the fastest that the exploration, sum of v_m/k sin(kt), moves the force
@@ -70,6 +70,7 @@ CLAIMS = (
         printed=less(f"{OBJECT}.plus.bound_used", 1.0),
         note="It uses {.soft.bound_used:.1%} of the bound, and without a barrier {.no_barrier.bound_used:.1%}: the "
         "barrier is not put to the test here. With tau_e = +K zeta, as Algorithm 8.1 prints, a bound is violated.",
+        turns=STOPPED,
     ),
     ours_8_10(
         "C8.12s",
