@@ -89,8 +89,15 @@ def _draw_forces(recordings: Recordings, metrics: Any, config: Config) -> Drawin
 
 def _draw_scene(recording: Recording) -> Drawing:
     figure, axis = style.subplots(width=style.ONE_COLUMN, height=2.4)
-    style.photo(axis, style.trimmed(recording.images)["b"])
+    _show(axis, style.trimmed(recording.images)["b"])
     return style.title(figure, "Two simulated Baxter arms hold a soft object")
+
+
+def _show(axis: Any, picture: Any) -> None:
+    """A picture from before the robot, whose right arm is at the left."""
+    style.photo(axis, picture)
+    for place, arm in ((0.15, "DFR"), (0.85, "AFR")):
+        axis.text(place, 0.0, arm, transform=axis.transAxes, ha="center", va="top", fontsize=7)
 
 
 def _draw_task(recording: Recording) -> Drawing:
@@ -100,7 +107,7 @@ def _draw_task(recording: Recording) -> Drawing:
     words = ("start", "on the left", "tilted", "swinging", "over the right", "pressed")
     for k, (name, word) in enumerate(zip("abcdef", words)):
         axis = figure.add_subplot(grid[k // 3, k % 3])
-        style.photo(axis, pictures[name])
+        _show(axis, pictures[name])
         style.panel(axis, name, word)
     path, tilt = figure.add_subplot(grid[2, :]), figure.add_subplot(grid[3, :])
     for k, (label, role) in enumerate((("x", "plain"), ("y", "book"), ("z", "rival"))):
