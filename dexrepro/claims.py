@@ -10,7 +10,7 @@ import itertools
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -34,6 +34,11 @@ class Predicate:
             return None
         numbers = [float(value) for name in self.metrics if (value := values[name]) is not None]
         return self.margin_of(numbers) if len(numbers) == len(self.metrics) else -1.0
+
+    def of(self, experiment: str) -> Predicate:
+        """The same, its metrics such as ``.case.metric`` under the name of their experiment."""
+        names = tuple(f"{experiment}{name}" if name.startswith(".") else name for name in self.metrics)
+        return replace(self, text=re.sub(r"(?<!\w)(?=\.\w)", experiment, self.text), metrics=names)
 
     def __str__(self) -> str:
         return self.text
@@ -165,8 +170,8 @@ class Evaluation:
 class Claim:
     """What the book says (or, with source "ours", a test that it does not make), as a predicate over metrics.
 
-    Metric names are ``experiment.case.metric`` or, from ``summarise``, ``experiment.metric``; all of a claim's metrics
-    belong to one experiment. A sentence of the book is one claim.
+    Metric names are ``.case.metric`` or, from ``summarise``, ``.metric``; ``of`` puts the name of the experiment whose
+    folder holds the claim before the dot. A sentence of the book is one claim.
 
     control: the same statement about the run without what the claim credits, or about the rival it speaks of; it must
         fail, or the claim was not tested. no_control: the reason why none can exist (an identity, a definition).
@@ -210,6 +215,12 @@ class Claim:
         if self.control is not None and self.no_control:
             raise ValueError(f"{self.id}: it has a control, so there is no reason why it could have none")
         object.__setattr__(self, "note", self.note.replace("{.", f"{{{self.experiment}."))
+
+    def of(self, experiment: str) -> Claim:
+        """The same under the name of the experiment whose folder holds it."""
+        parts = vars(self).items()
+        named: dict[str, Any] = {key: part.of(experiment) for key, part in parts if isinstance(part, Predicate)}
+        return replace(self, **named, readings={text: item.of(experiment) for text, item in self.readings.items()})
 
     @property
     def predicates(self) -> tuple[Predicate, ...]:
@@ -333,12 +344,16 @@ def robustness(holds: int, samples: int) -> str:
 
 @dataclass(frozen=True)
 class Reference:
-    """A number the book prints, to be shown beside the metric that corresponds to it."""
+    """A number the book prints, to be shown beside the metric that corresponds to it, named as in a ``Claim``."""
 
     metric: str
     value: float
     where: str
     unit: str = ""
+
+    def of(self, experiment: str) -> Reference:
+        """The same under the name of the experiment whose folder holds it."""
+        return replace(self, metric=re.sub(r"^(?=\.)", experiment, self.metric))
 
 
 ERRATUM_KINDS = ("error", "gap", "reading", "slip")

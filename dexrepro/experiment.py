@@ -204,11 +204,11 @@ class Experiment:
 
     @property
     def claims(self) -> tuple[Claim, ...]:
-        return self._part("claims", "CLAIMS", ())
+        return tuple(claim.of(self.name) for claim in self._part("claims", "CLAIMS", ()))
 
     @property
     def references(self) -> tuple[Reference, ...]:
-        return self._part("claims", "REFERENCES", ())
+        return tuple(reference.of(self.name) for reference in self._part("claims", "REFERENCES", ()))
 
     def function(self, name: str) -> Callable[..., Any] | None:
         """One of the optional functions above, or None."""

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dexrepro.claims import TIE, Claim, Erratum, about, every, greater, less, ordered, slip, within
+from dexrepro.claims import TIE, Claim, Erratum, Reference, about, every, greater, less, ordered, slip, within
 from dexrepro.experiment import Config, changed
 
 numbers = st.floats(-1e6, 1e6).filter(lambda x: abs(x) > 1e-6)
@@ -39,6 +39,22 @@ def test_margins_are_relative_gaps() -> None:
     assert within("a", 0, 10).margin({"a": 2.0}) == pytest.approx(0.2)
     with pytest.raises(ValueError, match="not below"):
         within("a", 1, 1)
+
+
+def test_names_from_the_dot_on_are_of_the_experiment_whose_folder_holds_the_claim() -> None:
+    parts = every(less(".fast.error", ".slow.error", 0.5), greater("other.case.value", 0.25), within(".gain", 0.5, 1))
+    claim = Claim(
+        "C1.01", "1.1", "", parts, control=less(".2b.x", 1), readings={"r": less(".r.x", 1)}, note="{.fast.error}"
+    )
+    found = claim.of("sponge")
+    assert found.metrics == ("sponge.fast.error", "sponge.slow.error", "other.case.value", "sponge.gain",
+                             "sponge.2b.x", "sponge.r.x")  # fmt: skip
+    assert (
+        str(found.predicate)
+        == "sponge.fast.error < 0.5 sponge.slow.error; other.case.value > 0.25; 0.5 <= sponge.gain <= 1"
+    )
+    assert found.note == "{sponge.fast.error}"
+    assert Reference(".fast.error", 1.0, "1.1").of("sponge").metric == "sponge.fast.error"
 
 
 def verdict(claim: Claim, **metrics: float) -> str:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dexrepro.claims import Predicate, every, less
 
-COMPARISON = "holding_comparison"
 
-
-def ordered_pairs(*pairs: tuple[str, str], metric: str = "rmse", experiment: str = COMPARISON) -> Predicate:
+def ordered_pairs(*pairs: tuple[str, str], metric: str = "rmse") -> Predicate:
     """The first case of every pair has the smaller metric."""
-    return every(*(less(f"{experiment}.{a}.{metric}", f"{experiment}.{b}.{metric}") for a, b in pairs))
+    return every(*(less(f".{a}.{metric}", f".{b}.{metric}") for a, b in pairs))

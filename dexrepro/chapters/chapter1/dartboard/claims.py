@@ -7,7 +7,7 @@ from dexrepro.claims import Claim, Predicate, Reference, about, every, greater, 
 
 
 def _nobody_lower(case: str) -> Predicate:
-    return every(greater(f"dartboard.{case}.wins_median", 6.5), less(f"dartboard.{case}.losses", 0.5))
+    return every(greater(f".{case}.wins_median", 6.5), less(f".{case}.losses", 0.5))
 
 
 fig_1_14 = about("1.14", "1.5.2.1")
@@ -15,7 +15,7 @@ CLAIMS = (
     fig_1_14(
         "C1.13",
         "A smaller scale makes the tool more precise.",
-        ordered(*(f"dartboard.{case}.general_radius" for case in ("scale1", "scale2", "scale3", "book", "scale6"))),
+        ordered(*(f".{case}.general_radius" for case in ("scale1", "scale2", "scale3", "book", "scale6"))),
         by_construction=OPERATOR,
         note="Median distance of the hits from the centre for constant scales of 1, 2, 3, "
         "{.mappings.general.factor:g} and 6.",
@@ -23,17 +23,14 @@ CLAIMS = (
     fig_1_14(
         "C1.14",
         "A larger scale gives more reach: the hand moves less for the same task.",
-        ordered(*(f"dartboard.{case}.general_excursion" for case in ("scale6", "book", "scale3", "scale2", "scale1"))),
+        ordered(*(f".{case}.general_excursion" for case in ("scale6", "book", "scale3", "scale2", "scale1"))),
         by_construction=OPERATOR,
     ),
     Claim(
         "C1.15b",
         "1.15b",
         "Near a board the operator slows down and the scale falls, between boards both rise.",
-        every(
-            less("dartboard.book.speed_near", "dartboard.book.speed_far"),
-            less("dartboard.book.scale_near", "dartboard.book.scale_far"),
-        ),
+        every(less(".book.speed_near", ".book.speed_far"), less(".book.scale_near", ".book.scale_far")),
         where="1.5.2.1",
         by_construction="Minimum-jerk movements are faster where they are longer.",
     ),
@@ -55,12 +52,12 @@ CLAIMS = (
         "C1.36",
         "1.15c",
         "Compared with the general mapping the adaptive scale makes teleoperation flexible: the hand moves less.",
-        less("dartboard.book.proposed_excursion", "dartboard.book.general_excursion"),
-        control=less("dartboard.scale2.general_excursion", "dartboard.book.general_excursion"),
+        less(".book.proposed_excursion", ".book.general_excursion"),
+        control=less(".scale2.general_excursion", ".book.general_excursion"),
         credits="the adaptive scale (1.45)",
         readings={
             "less than with a constant scale that is as precise": less(
-                "dartboard.smooth.proposed_excursion", "dartboard.scale3.general_excursion"
+                ".smooth.proposed_excursion", ".scale3.general_excursion"
             )
         },
         searched="constant scales of 1 to 6, with and without a low-pass of the hand's speed",
@@ -73,7 +70,7 @@ CLAIMS = (
 )
 
 REFERENCES = (
-    Reference("dartboard.book.wins", 12, "1.5.2.1", "persons"),
-    Reference("dartboard.book.ties", 1, "1.5.2.1", "persons"),
-    Reference("dartboard.book.losses", 0, "1.5.2.1", "persons"),
+    Reference(".book.wins", 12, "1.5.2.1", "persons"),
+    Reference(".book.ties", 1, "1.5.2.1", "persons"),
+    Reference(".book.losses", 0, "1.5.2.1", "persons"),
 )

@@ -5,17 +5,13 @@ from __future__ import annotations
 from dexrepro.chapters.chapter1.statements import CASES
 from dexrepro.claims import Claim, Predicate, about, every, less
 
-TRACKING = "force_tracking"
-
 
 def _tracking(metric: str, first: str, second: str) -> Predicate:
-    return every(
-        *(less(f"{TRACKING}.{case}_{first}.{metric}", f"{TRACKING}.{case}_{second}.{metric}") for case in CASES)
-    )
+    return every(*(less(f".{case}_{first}.{metric}", f".{case}_{second}.{metric}") for case in CASES))
 
 
 def _below(law: str, metric: str, bound: float, cases: tuple[str, ...] = CASES) -> Predicate:
-    return every(*(less(f"{TRACKING}.{case}_{law}.{metric}", bound) for case in cases))
+    return every(*(less(f".{case}_{law}.{metric}", bound) for case in cases))
 
 
 def _smallest(law: str) -> Predicate:
@@ -23,11 +19,11 @@ def _smallest(law: str) -> Predicate:
 
 
 def _robust(law: str, spread: str) -> Predicate:
-    return every(less(f"{TRACKING}.{spread}", 0.1), _below(law, "rmse_late", 0.5))
+    return every(less(f".{spread}", 0.1), _below(law, "rmse_late", 0.5))
 
 
 def _printed(metric: str, bound: float) -> Predicate:
-    return less(f"{TRACKING}.c1_printed.{metric}", bound)
+    return less(f".c1_printed.{metric}", bound)
 
 
 fig_1_10 = about("1.10", "1.5.1")
@@ -37,7 +33,7 @@ CLAIMS = (
         "The proposed law has the smallest force error of the three controllers in all three cases.",
         _smallest("proposed"),
         control=_smallest("integral"),
-        printed=less(f"{TRACKING}.c1_printed.rmse", f"{TRACKING}.c1_force.rmse"),
+        printed=less(".c1_printed.rmse", ".c1_force.rmse"),
         note="Without its weights the law is an integral of the force error. It has the smallest error of the three as "
         "well: {.c1_integral.rmse:.3f}, {.c2_integral.rmse:.3f} and {.c3_integral.rmse:.3f} N against "
         "{.c1_proposed.rmse:.3f}, {.c2_proposed.rmse:.3f} and {.c3_proposed.rmse:.3f} N. The win over the whole run "
@@ -89,7 +85,7 @@ CLAIMS = (
         "C1.08",
         "1.9",
         "In the initial posture the arms just touch the object without force.",
-        less(f"{TRACKING}.c1_proposed.force_start", 1e-9),
+        less(".c1_proposed.force_start", 1e-9),
         where="1.5.1",
         by_construction="The rest length of the simulated object is the initial distance of the end points.",
     ),

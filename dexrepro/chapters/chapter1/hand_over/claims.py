@@ -9,7 +9,7 @@ CLAIMS = (
         "C1.35",
         "1.16e",
         "A latch hands over from the field to the force law once, where a bare comparison chatters.",
-        every(less("hand_over.latched.switches", 1.5), greater("hand_over.bare.switches", 10.0)),
+        every(less(".latched.switches", 1.5), greater(".bare.switches", 10.0)),
         source="ours",
     ),
 )

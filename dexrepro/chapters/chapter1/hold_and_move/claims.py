@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, Reference, about, every, less
 
-HOLDING = "hold_and_move"
 TRIALS = ("t1", "t2", "t3")
 
 
 def _holding(metric: str, first: str, second: str) -> Predicate:
-    return every(
-        *(less(f"{HOLDING}.{trial}_{first}.{metric}", f"{HOLDING}.{trial}_{second}.{metric}") for trial in TRIALS)
-    )
+    return every(*(less(f".{trial}_{first}.{metric}", f".{trial}_{second}.{metric}") for trial in TRIALS))
 
 
 def _least(metric: str, law: str) -> Predicate:
@@ -19,7 +16,7 @@ def _least(metric: str, law: str) -> Predicate:
 
 
 def _overshoot(law: str) -> Predicate:
-    return every(*(less(f"{HOLDING}.{trial}_{law}.overshoot", 0.1) for trial in TRIALS))
+    return every(*(less(f".{trial}_{law}.overshoot", 0.1) for trial in TRIALS))
 
 
 PRINTED = {  # RMS force error [N], Section 1.5.2.2: proposed, impedance, fixed distance
@@ -35,8 +32,8 @@ CLAIMS = (
         "C1.10",
         "1.19",
         "With the quaternion rule the object is rotated by pi/4 without a twist between the hands.",
-        every(*(less(f"{HOLDING}.{trial}_proposed.turned", 5.0) for trial in TRIALS)),
-        control=less(f"{HOLDING}.t1_unturned.turned", 5.0),
+        every(*(less(f".{trial}_proposed.turned", 5.0) for trial in TRIALS)),
+        control=less(".t1_unturned.turned", 5.0),
         credits="the quaternion rule (1.14)",
         where="1.5.2.2",
         note="Largest rotation of one tool against the other [deg], of two torque-controlled arms: "
@@ -48,7 +45,7 @@ CLAIMS = (
         "After the 8th second the force error is smallest with the proposed law, on all three trajectories.",
         _least("rmse", "proposed"),
         control=_least("rmse", "integral"),
-        printed=less(f"{HOLDING}.t1_printed.rmse", f"{HOLDING}.t1_passive.rmse"),
+        printed=less(".t1_printed.rmse", ".t1_passive.rmse"),
         note="Absolute values are set by sensor noise and object; one late sample or a stiff object turns it round. "
         "Without its weights the law errs by {.t1_integral.rmse:.4f} N on the first trajectory, with them "
         "by {.t1_proposed.rmse:.4f} N: at these gains they do nothing.",
@@ -57,7 +54,7 @@ CLAIMS = (
         "C1.23b",
         "Passive impedance holds better than a fixed distance.",
         _holding("rmse", "passive", "fixed"),
-        control=less(f"{HOLDING}.t1_passive_calm.rmse", f"{HOLDING}.t1_fixed_calm.rmse"),
+        control=less(".t1_passive_calm.rmse", ".t1_fixed_calm.rmse"),
         note="It does so too with an object in which nothing varies. The printed impedance is close to its stability "
         "limit: where object and arms vary it often loses (study).",
     ),
@@ -65,8 +62,8 @@ CLAIMS = (
         "C1.24a",
         "The proposed law reaches the desired force fastest.",
         _least("settling", "proposed"),
-        control=less(f"{HOLDING}.t1_passive_tuned.settling", f"{HOLDING}.t1_proposed.settling"),
-        printed=less(f"{HOLDING}.t1_printed.settling", f"{HOLDING}.t1_passive.settling"),
+        control=less(".t1_passive_tuned.settling", ".t1_proposed.settling"),
+        printed=less(".t1_printed.settling", ".t1_passive.settling"),
         note="Into a band of 10 %; the control is the passive impedance with the best of twelve dampings. The first "
         "crossing of 95 % ties with the fixed distance: one speed limit for all.",
     ),
@@ -75,7 +72,7 @@ CLAIMS = (
         "with negligible overshoot.",
         _overshoot("proposed"),
         control=_overshoot("passive"),
-        printed=less(f"{HOLDING}.t1_printed.overshoot", 0.1),
+        printed=less(".t1_printed.overshoot", 0.1),
         note="Negligible: within the band of C1.24a; {.t3_proposed.overshoot:.1%} to "
         "{.t2_proposed.overshoot:.1%} here, which is close to it (study).",
     ),
@@ -85,7 +82,7 @@ CLAIMS = (
         every(_least("settling", "proposed"), _overshoot("proposed")),
         control=every(_least("settling", "integral"), _overshoot("integral")),
         credits="the adaptation law (1.29), (1.30)",
-        printed=less(f"{HOLDING}.t1_printed.settling", f"{HOLDING}.t1_passive.settling"),
+        printed=less(".t1_printed.settling", ".t1_passive.settling"),
         note="Without weights the law is as fast, into the band after {.t1_integral.settling:.2f} against "
         "{.t1_proposed.settling:.2f} s, and overshoots as little. The rise is the force term's of (1.32), "
         "whose other terms cancel (1.29) but for W.Z; only at gains below 0.05 do the weights shorten it (T1.S).",
@@ -93,24 +90,24 @@ CLAIMS = (
     ours_1_18(
         "C1.31",
         "The win survives one more sample of delay in the force measurement.",
-        less(f"{HOLDING}.t1_proposed_late.rmse", f"{HOLDING}.t1_passive_late.rmse"),
+        less(".t1_proposed_late.rmse", ".t1_passive_late.rmse"),
     ),
     ours_1_18(
         "C1.32",
         "The win survives an object twice as stiff.",
-        less(f"{HOLDING}.t1_proposed_stiff.rmse", f"{HOLDING}.t1_passive_stiff.rmse"),
+        less(".t1_proposed_stiff.rmse", ".t1_passive_stiff.rmse"),
         turns="on a stiff object the law goes on oscillating, and how far follows the smallest change of the start",
     ),
     ours_1_18(
         "C1.33",
         "The win survives tuning: both laws with the best of twelve gains.",
-        less(f"{HOLDING}.t1_proposed_tuned.rmse", f"{HOLDING}.t1_passive_tuned.rmse"),
+        less(".t1_proposed_tuned.rmse", ".t1_passive_tuned.rmse"),
         note="Gains tuned on the holding line without arms (T1.H), compared on the first trajectory of the arms.",
     ),
 )
 
 REFERENCES = tuple(
-    Reference(f"hold_and_move.{trial}_{law}.rmse_measured", value, "1.5.2.2", "N")
+    Reference(f".{trial}_{law}.rmse_measured", value, "1.5.2.2", "N")
     for trial, values in PRINTED.items()
     for law, value in zip(("proposed", "passive", "fixed"), values)
 )

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, every, greater, less, within
 
-READY = "ready_to_hold"
-
 
 def _in_time(case: str) -> Predicate:
-    return within(f"{READY}.{case}.own_before_partner", -1.5, 1.5)
+    return within(f".{case}.own_before_partner", -1.5, 1.5)
 
 
 def _waits_and_assists(case: str) -> Predicate:
-    return every(greater(f"{READY}.{case}.clearance", 0.0), _in_time(case))
+    return every(greater(f".{case}.clearance", 0.0), _in_time(case))
 
 
 def _points(case: str) -> Predicate:
-    return every(less(f"{READY}.{case}.facing", 2.0), less(f"{READY}.{case}.pointing", 10.0))
+    return every(less(f".{case}.facing", 2.0), less(f".{case}.pointing", 10.0))
 
 
 CLAIMS = (
@@ -24,8 +22,8 @@ CLAIMS = (
         "C1.18",
         "1.16",
         "AFR follows the moving object and does not touch it before DFR approaches.",
-        every(less(f"{READY}.adjustable.lag_most", 0.05), greater(f"{READY}.adjustable.clearance", 0.03)),
-        control=every(less(f"{READY}.constant.lag_most", 0.05), greater(f"{READY}.constant.clearance", 0.03)),
+        every(less(".adjustable.lag_most", 0.05), greater(".adjustable.clearance", 0.03)),
+        control=every(less(".constant.lag_most", 0.05), greater(".constant.clearance", 0.03)),
         where="1.5.2.1",
         note="The control has constant weights. Both bounds are ours, and with other gains of the field, none of "
         "which is printed, it mostly exceeds one of them (study).",
@@ -46,8 +44,8 @@ CLAIMS = (
         "C1.20",
         "1.16e",
         "When DFR touches the object AFR assists in holding at the right time.",
-        less(f"{READY}.adjustable.own_before_partner", 0.0),
-        control=less(f"{READY}.constant.own_before_partner", 0.0),
+        less(".adjustable.own_before_partner", 0.0),
+        control=less(".constant.own_before_partner", 0.0),
         readings={"at the same time, within 1.5 s, as in C1.19": _in_time("adjustable")},
         searched="the tolerance in time, varpi and the compliance of the field",
         where="1.5.2.1",

@@ -7,7 +7,7 @@ from dexrepro.claims import Claim, Predicate, about, every, greater, less
 
 
 def _mostly(law: str) -> Predicate:
-    return every(*(greater(f"sensitivity.tracking.best_{law}{case}", 0.5) for case in CASES))
+    return every(*(greater(f".tracking.best_{law}{case}", 0.5) for case in CASES))
 
 
 ours_1_10 = about("1.10", source="ours")
@@ -27,18 +27,13 @@ CLAIMS = (
     ours_1_10(
         "C1.26",
         "The autoregressive part improves the force after the transient.",
-        every(
-            *(
-                less(f"sensitivity.tracking.proposed_late{k}", f"sensitivity.tracking.proportional_late{k}")
-                for k in (1, 2, 3)
-            )
-        ),
+        every(*(less(f".tracking.proposed_late{k}", f".tracking.proportional_late{k}") for k in (1, 2, 3))),
         note="Against the same law without weights; over the whole run it does not help in cases 1 and 2.",
     ),
     ours_1_10(
         "C1.29",
         "The win over the force controller does not come from its smaller gain.",
-        every(*(less(f"sensitivity.tracking.equal_c{k}", f"sensitivity.tracking.force_c{k}") for k in (1, 2, 3))),
+        every(*(less(f".tracking.equal_c{k}", f".tracking.force_c{k}") for k in (1, 2, 3))),
         note="Both at 0.05 m/(s N): the whole-run error of cases 1 and 2 is then smaller with the force controller.",
     ),
 )

@@ -7,8 +7,6 @@ from collections.abc import Callable, Sequence
 from dexrepro.chapters.chapter2.statements import ordered_pairs
 from dexrepro.claims import Claim, Predicate, about, every, greater, less, ordered
 
-COMPARISON = "holding_comparison"
-
 _GROUP_1 = ("s3", "s4", "s5", "s6", "s7", "s8")
 _REGULATED = [(f"s{n + 1}", f"s{n}") for n in range(3, 19, 2)]
 _LEAD = [("s7", "s5"), ("s8", "s6"), ("s13", "s11"), ("s14", "s12"), ("s17", "s15"), ("s18", "s16")]
@@ -23,7 +21,7 @@ def _windows(statement: Callable[[str], Predicate]) -> dict[str, Predicate]:
 
 
 def _worst(metric: str, laws: Sequence[str] = ("s1", "s2")) -> Predicate:
-    names = [(f"{COMPARISON}.{law}.{metric}", f"{COMPARISON}.{other}.{metric}") for law in laws for other in _GROUP_1]
+    names = [(f".{law}.{metric}", f".{other}.{metric}") for law in laws for other in _GROUP_1]
     return every(*(greater(law, other, 10) for law, other in names))
 
 
@@ -55,7 +53,7 @@ def _lead(metric: str) -> Predicate:
 def _well(*unregulated: str) -> Predicate:
     """Within 10 % of the desired force; unregulated: the runs of group 3 without (2.8)."""
     runs = [*_ESTIMATING, *((case, 0.7) for case in unregulated)]
-    return every(*(less(f"{COMPARISON}.{case}.rmse", bound) for case, bound in runs))
+    return every(*(less(f".{case}.rmse", bound) for case, bound in runs))
 
 
 fig_2_8 = about("2.8", "2.4.1.3")
@@ -105,7 +103,7 @@ CLAIMS = (
         "C2.16",
         "2.8",
         "The regulation helps the force controller too (s2 against s1, a pair the book does not discuss).",
-        less(f"{COMPARISON}.s2.rmse", f"{COMPARISON}.s1.rmse"),
+        less(".s2.rmse", ".s1.rmse"),
         source="ours",
         where="2.4.1.3",
         note="Staying on the line costs it force error: what dominates is its static error.",
@@ -113,7 +111,7 @@ CLAIMS = (
     fig_2_8(
         "C2.17",
         "The advantage of (2.8) grows with the desired force.",
-        greater(f"{COMPARISON}.group3_gain", f"{COMPARISON}.group2_gain"),
+        greater(".group3_gain", ".group2_gain"),
         no_control="The desired force is all that differs between the groups; without it they are the same runs.",
         note="Without (2.8) 7 N cannot be reached with an object of 0.55 m; the value depends on the workspace bounds.",
     ),
@@ -121,7 +119,7 @@ CLAIMS = (
         "C2.18",
         "All runs with movement estimation perform well because of it (within 10 % of the desired force).",
         _well("s15", "s17"),
-        control=every(*(less(f"{COMPARISON}.{case}.rmse", 0.1) for case in ("s3", "s4", "s9", "s10"))),
+        control=every(*(less(f".{case}.rmse", 0.1) for case in ("s3", "s4", "s9", "s10"))),
         credits="the movement estimation",
         readings={"an object of 0.7 m": _well("s15_long", "s17_long")},
         searched="the length of the object, which is not printed",
@@ -160,8 +158,8 @@ CLAIMS = (
     fig_2_8(
         "C2.38",
         "The advantage of the proposed law is more evident where the partner moves along the holding line (Traj. 1).",
-        greater(f"{COMPARISON}.lead_1", f"{COMPARISON}.lead_2"),
-        control=greater(f"{COMPARISON}.integral_lead_1", f"{COMPARISON}.integral_lead_2"),
+        greater(".lead_1", ".lead_2"),
+        control=greater(".integral_lead_1", ".integral_lead_2"),
         where="2.4.2.2",
         note="By how much passive impedance errs more, with (2.8): {.lead_1:.3f} N on Traj. 1, "
         "{.lead_2:.3f} N on Traj. 2, where it errs less. The control is an integral force law.",
@@ -171,7 +169,7 @@ CLAIMS = (
             identifier,
             "2.A",
             f"With gains tuned under one search budget the order of the laws on Traj. {trajectory} is the book's.",
-            ordered(*(f"{COMPARISON}.tuned_{law}_{trajectory}.rmse" for law in _TUNED)),
+            ordered(*(f".tuned_{law}_{trajectory}.rmse" for law in _TUNED)),
             source="ours",
             where="2.4.1.3",
         )

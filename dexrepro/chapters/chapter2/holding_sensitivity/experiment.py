@@ -79,8 +79,8 @@ def _judge(values: pd.DataFrame, start: int) -> dict[str, float | None]:
         str(run): {"rmse": row[f"rmse_{start}"], **{f"rmse_{s}": row[f"rmse_{s}"] for s in STARTS}}
         for run, row in values.iterrows()
     }
-    flat: Metrics = {f"holding_comparison.{run}.{name}": v for run, row in metrics.items() for name, v in row.items()}
+    flat: Metrics = {f".{run}.{name}": v for run, row in metrics.items() for name, v in row.items()}
     summary = holding_comparison.summarise(metrics, Config())
-    flat |= {f"holding_comparison.{name}": value for name, value in summary.items()}
+    flat |= {f".{name}": value for name, value in summary.items()}
     found = {claim.id: claim.predicate for claim in CLAIMS if claim.id in JUDGED and claim.predicate}
     return {claim: predicate.margin(flat) for claim, predicate in found.items()}

@@ -4,25 +4,24 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, about, every, greater, less
 
-FIXED = "fixed_opening"
 REACHES = (1, 2, 3, 4)
 
 
 def _each(metric: str, bound: float, prefix: str = "reach") -> tuple[Predicate, ...]:
-    return tuple(less(f"{FIXED}.{prefix}{n}.{metric}", bound) for n in REACHES)
+    return tuple(less(f".{prefix}{n}.{metric}", bound) for n in REACHES)
 
 
 def _nearer(prefix: str) -> Predicate:
     """In every reach nearer to the remote centre than joint angles that are interpolated between postures."""
     distance = "rcm_distance_max"
-    return every(*(less(f"{FIXED}.{prefix}{n}.{distance}", f"{FIXED}.postures{n}.{distance}") for n in REACHES))
+    return every(*(less(f".{prefix}{n}.{distance}", f".postures{n}.{distance}") for n in REACHES))
 
 
 def _hardest(reach: int, prefix: str) -> Predicate:
     """The Dis_R of one reach is the largest of the four."""
     distance = "rcm_distance_max"
     others = [n for n in REACHES if n != reach]
-    return every(*(less(f"{FIXED}.{prefix}{n}.{distance}", f"{FIXED}.{prefix}{reach}.{distance}") for n in others))
+    return every(*(less(f".{prefix}{n}.{distance}", f".{prefix}{reach}.{distance}") for n in others))
 
 
 fig_3_7_to_10 = about("3.7-3.10", "3.5.2")
@@ -57,14 +56,14 @@ CLAIMS = (
     ours_3_7_to_10(
         "C3.03b",
         "Where the tool axis is left free, the null-space torque brings the arm nearer in all four reaches.",
-        greater(f"{FIXED}.position_ratio", 1.0),
+        greater(".position_ratio", 1.0),
         note="With a model 10 % too light the sagging arm happens to end nearer in reach 1 without the torque.",
     ),
     ours_3_7_to_10(
         "C3.03c",
         "With an exact model and a free tool axis the null-space torque at least halves the distance in reach 1.",
-        less(f"{FIXED}.exactpos1.rcm_distance_final", f"{FIXED}.exactposfree1.rcm_distance_final", 0.5),
-        printed=less(f"{FIXED}.bracket1.rcm_distance_final", f"{FIXED}.exactposfree1.rcm_distance_final", 0.5),
+        less(".exactpos1.rcm_distance_final", ".exactposfree1.rcm_distance_final", 0.5),
+        printed=less(".bracket1.rcm_distance_final", ".exactposfree1.rcm_distance_final", 0.5),
         note="With the bracket of (3.31) as printed it does, too. What decides is how its arrows are read: from the "
         "first letter to the second the force drives the arm away (E3.16b).",
     ),
@@ -72,7 +71,7 @@ CLAIMS = (
         "C3.04",
         "The null-space torque leaves the end-effector's task alone at the end (below 0.1 mm in all four reaches).",
         every(*_each("final_position_error", 1e-4)),
-        control=less(f"{FIXED}.unprojected1.final_position_error", 1e-4),
+        control=less(".unprojected1.final_position_error", 1e-4),
         credits="the projector",
         readings={"links whose errors differ": every(*_each("final_position_error", 1e-4, "uneven"))},
         where="3.3.2",
@@ -84,13 +83,11 @@ CLAIMS = (
         "C3.04b",
         "The null-space torque leaves the task alone on the way too: the largest tracking error grows by less than a "
         "tenth.",
-        every(
-            *(less(f"{FIXED}.reach{n}.tracking_error_max", f"{FIXED}.free{n}.tracking_error_max", 1.1) for n in REACHES)
-        ),
-        control=less(f"{FIXED}.unprojected1.tracking_error_max", f"{FIXED}.free1.tracking_error_max", 1.1),
+        every(*(less(f".reach{n}.tracking_error_max", f".free{n}.tracking_error_max", 1.1) for n in REACHES)),
+        control=less(".unprojected1.tracking_error_max", ".free1.tracking_error_max", 1.1),
         readings={
             "the printed six dimensions (reach 1)": less(
-                f"{FIXED}.pose1.tracking_error_max", f"{FIXED}.pose_free1.tracking_error_max", 1.1
+                ".pose1.tracking_error_max", ".pose_free1.tracking_error_max", 1.1
             )
         },
         searched="task (tool axis held, six dimensions); half and a quarter of the control step, where both hold, too",
@@ -106,15 +103,15 @@ CLAIMS = (
         "C3.04c",
         "With that braking taken through the projector as well, the tracking error stays below 0.1 mm with the "
         "null-space torque (tool axis free, reach 1, exact model).",
-        less(f"{FIXED}.damped1.tracking_error_max", 1e-4),
+        less(".damped1.tracking_error_max", 1e-4),
     ),
     fig_3_10(
         "C3.05",
         "The reach whose opening is farther out than its target succeeds as the others do.",
         every(
-            less(f"{FIXED}.reach4.final_position_error", 0.002),
-            less(f"{FIXED}.reach4.rcm_distance_max", 0.01),
-            less(f"{FIXED}.reach4.contact_time", 1e-3),
+            less(".reach4.final_position_error", 0.002),
+            less(".reach4.rcm_distance_max", 0.01),
+            less(".reach4.contact_time", 1e-3),
         ),
         by_construction="the gripper's length and the hole's side, which decide it, are ours (C3.02, C3.06)",
     ),
@@ -137,10 +134,7 @@ CLAIMS = (
         "C3.06",
         "3.6-3.10",
         "The arm does not touch the opening or the box, while a straight reach does.",
-        every(
-            *_each("contact_time", 1e-3),
-            *(greater(f"{FIXED}.straight{n}.contact_time", 0.1) for n in REACHES),
-        ),
+        every(*_each("contact_time", 1e-3), *(greater(f".straight{n}.contact_time", 0.1) for n in REACHES)),
         by_construction="The hole's side is ours; with a smaller one the forearm touches in reach 1.",
         where="3.5.2",
     ),
@@ -161,15 +155,12 @@ CLAIMS = (
         "The network that learns the dynamics improves the control: smaller final error than without, gravity known "
         "to 10 % and not at all.",
         every(
-            less(f"{FIXED}.reach1.final_position_error", f"{FIXED}.unlearnt1.final_position_error"),
-            less(f"{FIXED}.weightless1.final_position_error", f"{FIXED}.weightless_unlearnt1.final_position_error"),
+            less(".reach1.final_position_error", ".unlearnt1.final_position_error"),
+            less(".weightless1.final_position_error", ".weightless_unlearnt1.final_position_error"),
         ),
         control=every(
-            less(f"{FIXED}.constant1.final_position_error", f"{FIXED}.unlearnt1.final_position_error"),
-            less(
-                f"{FIXED}.weightless_constant1.final_position_error",
-                f"{FIXED}.weightless_unlearnt1.final_position_error",
-            ),
+            less(".constant1.final_position_error", ".unlearnt1.final_position_error"),
+            less(".weightless_constant1.final_position_error", ".weightless_unlearnt1.final_position_error"),
         ),
         credits="the network that learns the dynamics",
         where="3.1, 3.2.2",
@@ -181,16 +172,13 @@ CLAIMS = (
     ours_3_7(
         "C3.16b",
         "With the law as printed, gravity left to the network alone, reach 1 succeeds without contact.",
-        every(
-            less(f"{FIXED}.weightless1.final_position_error", 0.002),
-            less(f"{FIXED}.weightless1.contact_time", 1e-3),
-        ),
+        every(less(".weightless1.final_position_error", 0.002), less(".weightless1.contact_time", 1e-3)),
         note="The arm drops before the weights have grown; Gamma is not printed.",
     ),
     ours_3_7(
         "C3.17",
         "Nodes are generated from the input: more than one in every reach.",
-        every(*(greater(f"{FIXED}.reach{n}.node_count", 1.5) for n in REACHES)),
+        every(*(greater(f".reach{n}.node_count", 1.5) for n in REACHES)),
         note="With the printed threshold of 10 a smooth reference stays within one node, so that the network is an "
         "integrator with leakage; only the wrist's singularity in reach 2 makes more. The book's reference is "
         "not printed.",

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Reference, greater, less
 
-CLASSES = "grasp_classes"
-
 CLAIMS = (
     Claim(
         "C3.19",
         "3.C",
         "The classifier reaches a training accuracy of 98 % after 25 epochs.",
-        greater(f"{CLASSES}.wide.train_accuracy", 0.98),
+        greater(".wide.train_accuracy", 0.98),
         by_construction="Cornell's data, relabelled, is not available: synthetic scenes whose difficulty is ours.",
         where="3.4.2.3",
         note="With one seed of the network; fewer of the new scenes are told right (Fig. 3.C).",
@@ -21,8 +19,8 @@ CLAIMS = (
         "C3.20",
         "3.C",
         "Grasps outside the safety region can be told from those inside: at most a tenth of them passes for safe.",
-        less(f"{CLASSES}.wide.unsafe_called_safe", 0.1),
-        control=less(f"{CLASSES}.narrow.unsafe_called_safe", 0.1),
+        less(".wide.unsafe_called_safe", 0.1),
+        control=less(".narrow.unsafe_called_safe", 0.1),
         where="3.4.2.2",
         note="The control is a patch that does not reach beyond the safety margin. It needs enough scenes, too: "
         "{.scenes} were taken after fewer had let more than a tenth pass, and where what is not "
@@ -32,8 +30,8 @@ CLAIMS = (
         "C3.20b",
         "3.C",
         "A patch of 0.06 m, in which no wall can be seen from the margin of 0.06 m, does as well.",
-        less(f"{CLASSES}.narrow.unsafe_called_safe", 0.1),
+        less(".narrow.unsafe_called_safe", 0.1),
         source="ours",
     ),
 )
-REFERENCES = (Reference(f"{CLASSES}.wide.train_accuracy", 0.98, "3.4.2.3", "-"),)
+REFERENCES = (Reference(".wide.train_accuracy", 0.98, "3.4.2.3", "-"),)

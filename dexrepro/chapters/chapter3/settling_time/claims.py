@@ -4,23 +4,18 @@ from __future__ import annotations
 
 from dexrepro.claims import Predicate, about, every, less
 
-SETTLING = "settling_time"
-
 
 def _fixed(case: str, bound: str = "bound") -> Predicate:
     """The time stays below T_max and no longer grows with the first error (by 2 % from 3.16 rad to 10 rad)."""
     return every(
-        less(f"{SETTLING}.{case}.settling_max", f"{SETTLING}.printed.{bound}"),
-        less(f"{SETTLING}.{case}.settling_10", f"{SETTLING}.{case}.settling_3p16", 1.02),
+        less(f".{case}.settling_max", f".printed.{bound}"), less(f".{case}.settling_10", f".{case}.settling_3p16", 1.02)
     )
 
 
 def _sooner(case: str) -> Predicate:
     """A fifth sooner than the linear terms alone."""
     sizes = ("0p1", "1")
-    return every(
-        *(less(f"{SETTLING}.{case}.settling_{size}", f"{SETTLING}.linear.settling_{size}", 0.8) for size in sizes)
-    )
+    return every(*(less(f".{case}.settling_{size}", f".linear.settling_{size}", 0.8) for size in sizes))
 
 
 fig_3_a = about("3.A", "3.3.3")
@@ -41,7 +36,7 @@ CLAIMS = (
         "C3.14b",
         "It does not grow either, by more than a tenth from 1 rad to 10 rad, with the feedback limited to the arm's "
         "torques.",
-        less(f"{SETTLING}.limited.settling_10", f"{SETTLING}.limited.settling_1", 1.1),
+        less(".limited.settling_10", ".limited.settling_1", 1.1),
         note="From 1 rad the printed gains ask for {.printed.torque_1:.0f} N m; within the limits the arm settles in "
         "{.limited.settling_1:.3g} s from 1 rad and in {.limited.settling_10:.3g} s from 10 rad (?: not within the "
         "run). What the law adds for the rate of the virtual velocity is taken to be delivered.",
@@ -61,12 +56,12 @@ CLAIMS = (
         "C3.15b",
         "With K11 and K21 tuned for both laws (25 pairs each, same torque allowed) the law with the terms in SIG still "
         "settles sooner from 1 rad.",
-        less(f"{SETTLING}.tuned.settling_1", f"{SETTLING}.tuned_linear.settling_1"),
+        less(".tuned.settling_1", ".tuned_linear.settling_1"),
     ),
     fig_3_a(
         "C3.18",
         "The Lyapunov function does not grow along the error dynamics.",
-        less(f"{SETTLING}.printed.growth", 1e-6),
+        less(".printed.growth", 1e-6),
         no_control="an identity of (3.24) to (3.40) for any positive gains; the run checks derivation and integration",
     ),
 )

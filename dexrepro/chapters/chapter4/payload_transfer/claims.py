@@ -4,40 +4,35 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, Reference, about, every, greater, less
 
-P = "payload_transfer"
-
 
 def _oscillates(network: str, other: str) -> Predicate:
     """Visibly: half as much again as the other, and more than without any network."""
     rate = "oscillation_mm_s"
-    return every(
-        greater(f"{P}.{network}.{rate}", f"{P}.{other}.{rate}", 1.5),
-        greater(f"{P}.{network}.{rate}", f"{P}.none.{rate}"),
-    )
+    return every(greater(f".{network}.{rate}", f".{other}.{rate}", 1.5), greater(f".{network}.{rate}", f".none.{rate}"))
 
 
 def _less_effect(case: str) -> Predicate:
     """The fixed network responds in phase I, and in phase II by less than half as much."""
     return every(
-        greater(f"{P}.{case}.activation_phase1", 0.01),
-        less(f"{P}.{case}.activation_phase2", f"{P}.{case}.activation_phase1", 0.5),
+        greater(f".{case}.activation_phase1", 0.01),
+        less(f".{case}.activation_phase2", f".{case}.activation_phase1", 0.5),
     )
 
 
 def _few_nodes(case: str) -> Predicate:
     """A hundredth of the fixed network's nodes, at an error no more than 5 % above that of the one of tuned width."""
-    return every(less(f"{P}.{case}.nodes_phase2", 163.84), less(f"{P}.{case}.rmse_mm", f"{P}.rbf_wide.rmse_mm", 1.05))
+    return every(less(f".{case}.nodes_phase2", 163.84), less(f".{case}.rmse_mm", ".rbf_wide.rmse_mm", 1.05))
 
 
 def _serves_all(case: str) -> Predicate:
-    return every(less(f"{P}.{case}.worst_rmse_mm", f"{P}.{case}.rmse_mm", 1.5), less(f"{P}.{case}.max_usage", 1.0))
+    return every(less(f".{case}.worst_rmse_mm", f".{case}.rmse_mm", 1.5), less(f".{case}.max_usage", 1.0))
 
 
 def _transfers(trained: str, frozen: str, *untrained: str) -> Predicate:
     """Less error than untrained and, with what was learned alone, than without a network."""
     return every(
-        *(less(f"{P}.{trained}.rmse_mm", f"{P}.{rival}.rmse_mm") for rival in untrained),
-        less(f"{P}.{frozen}.rmse_mm", f"{P}.none.rmse_mm"),
+        *(less(f".{trained}.rmse_mm", f".{rival}.rmse_mm") for rival in untrained),
+        less(f".{frozen}.rmse_mm", ".none.rmse_mm"),
     )
 
 
@@ -46,8 +41,8 @@ CLAIMS = (
     fig_4_12(
         "C4.20",
         "The prescribed performance is achieved on all nine trajectories.",
-        less(f"{P}.reuse.max_usage", 1.0),
-        control=less(f"{P}.no_barrier.max_usage", 1.0),
+        less(".reuse.max_usage", 1.0),
+        control=less(".no_barrier.max_usage", 1.0),
         credits="the proposed controller, that is, its barrier",
         note="The bound is so wide that the error takes {.reuse.max_usage:.0%} of it, {.no_barrier.max_usage:.0%} "
         "without the barrier and {.none.max_usage:.0%} without a network.",
@@ -69,8 +64,8 @@ CLAIMS = (
         "C4.21b",
         "4.12",
         "The broad network errs less than the fixed network of tuned width at equal effective gain.",
-        less(f"{P}.reuse.rmse_mm", f"{P}.rbf_wide.rmse_mm"),
-        control=less(f"{P}.constant.rmse_mm", f"{P}.rbf_wide.rmse_mm"),
+        less(".reuse.rmse_mm", ".rbf_wide.rmse_mm"),
+        control=less(".constant.rmse_mm", ".rbf_wide.rmse_mm"),
         source="ours",
         note="{.reuse.rmse_mm:.2f} against {.rbf_wide.rmse_mm:.2f} mm; one constant node {.constant.rmse_mm:.2f} mm.",
     ),
@@ -122,7 +117,7 @@ CLAIMS = (
     ),
 )
 REFERENCES = (
-    Reference(f"{P}.reuse.nodes_phase1", 58, "4.6"),
-    Reference(f"{P}.reuse.nodes_phase2", 72, "4.6"),
-    Reference(f"{P}.rbf_medium.most_nodes", 16384, "4.6"),
+    Reference(".reuse.nodes_phase1", 58, "4.6"),
+    Reference(".reuse.nodes_phase2", 72, "4.6"),
+    Reference(".rbf_medium.most_nodes", 16384, "4.6"),
 )

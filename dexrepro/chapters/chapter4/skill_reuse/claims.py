@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, Reference, about, every, greater, less, ordered
 
-S = "skill_reuse"
 BROAD = ("broad20", "broad30", "broad50")
 COMMON = ("broad20", "common30", "common50")
 FIXED = ("rbf2", "rbf10")
@@ -13,19 +12,19 @@ PARAMETER = "it compares values of one parameter, and what would contradict it i
 
 
 def _below(metric: str, case: str, *rivals: str, factor: float = 1.0) -> Predicate:
-    return every(*(less(f"{S}.{case}.{metric}", f"{S}.{rival}.{metric}", factor) for rival in rivals))
+    return every(*(less(f".{case}.{metric}", f".{rival}.{metric}", factor) for rival in rivals))
 
 
 def _easier(case: str, strokes: tuple[tuple[int, str], ...]) -> Predicate:
     """The strokes of a case, by their numbers, err by a fifth less than the same strokes learned alone."""
-    return every(*(less(f"{S}.{case}.stroke{n}_rmse_mm", f"{S}.{alone}.stroke1_rmse_mm", 0.8) for n, alone in strokes))
+    return every(*(less(f".{case}.stroke{n}_rmse_mm", f".{alone}.stroke1_rmse_mm", 0.8) for n, alone in strokes))
 
 
 def _early(cases: tuple[str, ...]) -> Predicate:
     """Error ripple and turning points of the first seconds, in the order of the cases."""
     return every(
-        ordered(*(f"{S}.{case}.error_ripple_mm" for case in cases)),
-        greater(f"{S}.{cases[-1]}.error_extrema", f"{S}.{cases[0]}.error_extrema"),
+        ordered(*(f".{case}.error_ripple_mm" for case in cases)),
+        greater(f".{cases[-1]}.error_extrema", f".{cases[0]}.error_extrema"),
     )
 
 
@@ -53,7 +52,7 @@ CLAIMS = (
         "C4.01b",
         "4.6",
         "It is also nearer than the fixed network of tuned width once both have settled.",
-        less(f"{S}.broad20.steady_rmse_mm", f"{S}.rbf10.steady_rmse_mm"),
+        less(".broad20.steady_rmse_mm", ".rbf10.steady_rmse_mm"),
         source="ours",
         note="Of the widths 2, 6, 10 and 20 the fixed network with 10 errs least on the last stroke; with 2, the "
         "spacing of the printed centres, it oscillates.",
@@ -101,8 +100,8 @@ CLAIMS = (
     fig_4_6(
         "C4.04",
         "The tracking error never leaves the prescribed bound.",
-        every(*(less(f"{S}.{case}.max_usage", 1.0) for case in (*BROAD, *FIXED, "fuzzy", "zero20"))),
-        control=less(f"{S}.no_barrier.max_usage", 1.0),
+        every(*(less(f".{case}.max_usage", 1.0) for case in (*BROAD, *FIXED, "fuzzy", "zero20"))),
+        control=less(".no_barrier.max_usage", 1.0),
         credits="the barrier Lyapunov function",
         where="4.3.1, 4.5",
         note="The largest share is the initial error itself for all but the narrow fixed network. It holds without any "
@@ -111,12 +110,12 @@ CLAIMS = (
     fig_4_6(
         "C4.06",
         "A smaller distance threshold makes the tracking error smaller.",
-        ordered(*(f"{S}.{case}.rmse_mm" for case in BROAD)),
+        ordered(*(f".{case}.rmse_mm" for case in BROAD)),
         no_control=PARAMETER,
         readings={
-            ONE_GAIN: ordered(*(f"{S}.{case}.rmse_mm" for case in COMMON)),
-            "once settled": ordered(*(f"{S}.{case}.steady_rmse_mm" for case in BROAD)),
-            "once settled, one gain": ordered(*(f"{S}.{case}.steady_rmse_mm" for case in COMMON)),
+            ONE_GAIN: ordered(*(f".{case}.rmse_mm" for case in COMMON)),
+            "once settled": ordered(*(f".{case}.steady_rmse_mm" for case in BROAD)),
+            "once settled, one gain": ordered(*(f".{case}.steady_rmse_mm" for case in COMMON)),
         },
         note="Over the whole run the errors differ little, being set by the start ({.broad20.rmse_mm:.2f}, "
         "{.broad30.rmse_mm:.2f}, {.broad50.rmse_mm:.2f} mm for 20, 30, 50); settled, at equal effective gain, 20 and "
@@ -135,23 +134,23 @@ CLAIMS = (
     fig_4_7(
         "C4.08",
         "The number of nodes grows fast with a decreasing threshold.",
-        ordered(*(f"{S}.{case}.nodes" for case in ("broad50", "broad30", "broad20"))),
+        ordered(*(f".{case}.nodes" for case in ("broad50", "broad30", "broad20"))),
         no_control="by (4.7) a node is added where the input is farther than the threshold, so that only how many is "
         "open",
     ),
     fig_4_7(
         "C4.09",
         "The broad network needs far fewer nodes than the 256 of the fixed ones.",
-        every(*(less(f"{S}.{case}.nodes", 25.6) for case in BROAD), _below("rmse_mm", "broad20", "rbf10", factor=1.05)),
-        control=every(less(f"{S}.constant.nodes", 25.6), _below("rmse_mm", "constant", "rbf10", factor=1.05)),
+        every(*(less(f".{case}.nodes", 25.6) for case in BROAD), _below("rmse_mm", "broad20", "rbf10", factor=1.05)),
+        control=every(less(".constant.nodes", 25.6), _below("rmse_mm", "constant", "rbf10", factor=1.05)),
         credits="the broad network",
         note="Far fewer: a tenth, at an error that is no more than 5 % larger. Each node has three features.",
     ),
     fig_4_7(
         "C4.10",
         "Nodes are added when a new motion brings new inputs.",
-        every(*(greater(f"{S}.{case}.nodes", f"{S}.{case}.nodes_trained") for case in BROAD)),
-        control=every(*(greater(f"{S}.{case}.stroke4_nodes", f"{S}.{case}.stroke3_nodes") for case in BROAD)),
+        every(*(greater(f".{case}.nodes", f".{case}.nodes_trained") for case in BROAD)),
+        control=every(*(greater(f".{case}.stroke4_nodes", f".{case}.stroke3_nodes") for case in BROAD)),
         where="4.2.2",
         note="The control is a motion within known inputs, the last of the strokes: it adds none.",
     ),
@@ -159,7 +158,7 @@ CLAIMS = (
         "C4.10b",
         "4.7",
         "These nodes cover the new orbit.",
-        greater(f"{S}.broad20.last_node_s", 1.0),
+        greater(".broad20.last_node_s", 1.0),
         source="ours",
         note="The last is added after {.broad20.last_node_s:.2f} s, driven by the virtual acceleration at "
         "the start; on the settled orbit the input stays within {.broad20.settled_input:.2g} of the origin, "
@@ -168,12 +167,12 @@ CLAIMS = (
     fig_4_8(
         "C4.11",
         "Only some weights become large while the others stay near zero.",
-        every(*(less(f"{S}.{case}.large_weight_share", 0.5) for case in ("broad20", "broad30"))),
-        control=less(f"{S}.rbf10.large_weight_share", 0.5),
+        every(*(less(f".{case}.large_weight_share", 0.5) for case in ("broad20", "broad30"))),
+        control=less(".rbf10.large_weight_share", 0.5),
         credits="partial persistent excitation, by which nodes far from the orbit are not activated",
         readings={
             "large: above a fifth of the largest": every(
-                *(less(f"{S}.{case}.very_large_weight_share", 0.5) for case in ("broad20", "broad30"))
+                *(less(f".{case}.very_large_weight_share", 0.5) for case in ("broad20", "broad30"))
             )
         },
         note="Large: above a tenth of the largest, on the ellipse. With few nodes that are wider than the orbit about "
@@ -183,13 +182,13 @@ CLAIMS = (
     ours_4_8(
         "C4.11b",
         "The pattern holds for a fixed network whose width is the spacing of its nodes.",
-        less(f"{S}.rbf2.large_weight_share", 0.5),
+        less(".rbf2.large_weight_share", 0.5),
     ),
     fig_4_8(
         "C4.12",
         "The weights converge.",
-        every(*(less(f"{S}.{case}.weight_drift", 0.1) for case in BROAD)),
-        control=less(f"{S}.constant.weight_drift", 0.1),
+        every(*(less(f".{case}.weight_drift", 0.1) for case in BROAD)),
+        control=less(".constant.weight_drift", 0.1),
         where="4.3.3, 4.5",
         note="Converge: the mean over a period moves by less than 10 % from one period to the next. An integrator's "
         "does as well, as it must by Lemma 4.1: its one feature, a constant, is persistently exciting. Where what is "
@@ -198,7 +197,7 @@ CLAIMS = (
     ours_4_8(
         "C4.12b",
         "They become constant.",
-        every(*(less(f"{S}.{case}.weight_ripple", 0.05) for case in BROAD)),
+        every(*(less(f".{case}.weight_ripple", 0.05) for case in BROAD)),
         note="They keep rippling by {.broad20.weight_ripple:.0%} at the orbit's frequency, that is, they "
         "partly act as an integrator.",
     ),
@@ -223,8 +222,8 @@ CLAIMS = (
     fig_4_5(
         "C4.14",
         "The mean learned weights alone represent the dynamics (4.31).",
-        less(f"{S}.broad20.frozen_steady_rmse_mm", f"{S}.none.steady_rmse_mm"),
-        control=less(f"{S}.constant.frozen_steady_rmse_mm", f"{S}.none.steady_rmse_mm"),
+        less(".broad20.frozen_steady_rmse_mm", ".none.steady_rmse_mm"),
+        control=less(".constant.frozen_steady_rmse_mm", ".none.steady_rmse_mm"),
         credits="the approximation by the network's features",
         where="4.3.3",
         note="They leave {.broad20.frozen_steady_rmse_mm:.2f} of {.none.steady_rmse_mm:.2f} mm; "
@@ -235,7 +234,7 @@ CLAIMS = (
         "C4.14b",
         "4.5",
         "The mean learned weights alone do as well as a network that keeps learning.",
-        less(f"{S}.broad20.frozen_steady_rmse_mm", f"{S}.broad20.steady_rmse_mm", 2.0),
+        less(".broad20.frozen_steady_rmse_mm", ".broad20.steady_rmse_mm", 2.0),
         source="ours",
         note="Within a factor of two.",
     ),
@@ -255,8 +254,8 @@ CLAIMS = (
     fig_4_8(
         "C4.18a",
         "Nodes far from a new orbit keep what they learned, because Gaussians are local.",
-        less(f"{S}.detour.stroke3_rmse_mm", f"{S}.repeat.stroke2_rmse_mm", 1.1),
-        control=less(f"{S}.constant_detour.stroke3_rmse_mm", f"{S}.constant_repeat.stroke2_rmse_mm", 1.1),
+        less(".detour.stroke3_rmse_mm", ".repeat.stroke2_rmse_mm", 1.1),
+        control=less(".constant_detour.stroke3_rmse_mm", ".constant_repeat.stroke2_rmse_mm", 1.1),
         credits="the locality of the Gaussians",
         where="Remark 4.1(4)",
         note="A stroke repeated after another was learned errs by {.detour.stroke3_rmse_mm:.2f} mm, "
@@ -267,11 +266,8 @@ CLAIMS = (
     ours_4_8(
         "C4.18b",
         "The whole network is local.",
-        less(f"{S}.broad20.global_weight_ratio", 0.1),
+        less(".broad20.global_weight_ratio", 0.1),
         note="The feature cos(s_i) goes to 1 far away, and its weights are as large as those of the Gaussians.",
     ),
 )
-REFERENCES = (
-    Reference(f"{S}.rbf2.nodes", 256, "4.5"),
-    Reference(f"{S}.fuzzy.nodes", 256, "4.5"),
-)
+REFERENCES = (Reference(".rbf2.nodes", 256, "4.5"), Reference(".fuzzy.nodes", 256, "4.5"))

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, about, every, greater, less
 
-TRACKING = "bounded_tracking"
 LETTERS = ("a", "w", "z", "k", "l", "capital")
 
 
 def within_limits(case: str) -> Predicate:
-    return less(f"{TRACKING}.{case}.bound_use", 1.0)
+    return less(f".{case}.bound_use", 1.0)
 
 
 def decays(case: str) -> Predicate:
-    return every(less(f"{TRACKING}.{case}.lyapunov_peak", 1.01), less(f"{TRACKING}.{case}.lyapunov_late", 0.05))
+    return every(less(f".{case}.lyapunov_peak", 1.01), less(f".{case}.lyapunov_late", 0.05))
 
 
 ours_5_d = about("5.D", source="ours")
@@ -76,8 +75,8 @@ CLAIMS = (
         "C5.34",
         "The tuned law tracks better than PD control with gravity compensation tuned with the same effort.",
         every(
-            *(less(f"{TRACKING}.tuned.tip_rms", f"{TRACKING}.{pd}.tip_rms") for pd in ("pd_tuned", "pd_stiffest")),
-            less(f"{TRACKING}.tuned_encoders.tip_rms", f"{TRACKING}.pd_stiffest_encoders.tip_rms"),
+            *(less(".tuned.tip_rms", f".{pd}.tip_rms") for pd in ("pd_tuned", "pd_stiffest")),
+            less(".tuned_encoders.tip_rms", ".pd_stiffest_encoders.tip_rms"),
         ),
         note="As many settings each, chosen on the letter a. The best PD gain is the largest of them: with ten times "
         "as much PD control errs by {.pd_stiffest.tip_rms:.3f} mm against {.pd_tuned.tip_rms:.3f}, and the law with "
@@ -87,8 +86,8 @@ CLAIMS = (
     ours_5_d(
         "C5.35",
         "The network makes the tracking accurate: without it the pen's error is at least ten times larger.",
-        greater(f"{TRACKING}.no_network.tip_rms", f"{TRACKING}.letter_w.tip_rms", factor=10.0),
-        control=greater(f"{TRACKING}.no_network.tip_rms", f"{TRACKING}.integrator.tip_rms", factor=10.0),
+        greater(".no_network.tip_rms", ".letter_w.tip_rms", factor=10.0),
+        control=greater(".no_network.tip_rms", ".integrator.tip_rms", factor=10.0),
         credits="the network",
         note="With one constant node in its place, an integrator at the same effective gain, the error is "
         "{.integrator.tip_rms:.3f} mm against {.letter_w.tip_rms:.3f} mm.",

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dexrepro.chapters.chapter5.statements import TARGETS
 from dexrepro.claims import Claim, Predicate, every, less
 
-REUSE = "knowledge_reuse"
-
 
 def begins_better(case: str, than: str = "anew") -> Predicate:
-    return every(*(less(f"{REUSE}.{case}.{letter}.early", f"{REUSE}.{than}.{letter}.early") for letter in TARGETS))
+    return every(*(less(f".{case}.{letter}.early", f".{than}.{letter}.early") for letter in TARGETS))
 
 
 CLAIMS = (

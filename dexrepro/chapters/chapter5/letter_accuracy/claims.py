@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, about, every, greater, less, within
 
-ACCURACY = "letter_accuracy.default"
-PRINTED_SIGN = "letter_accuracy.printed_damping"
+ACCURACY = ".default"
+PRINTED_SIGN = ".printed_damping"
 THIRTY = "30 added features, the number that 5.5.2 prints (none is printed here)"
 FEATURES = "the added features, images of the kernels"
 REAL = "real_handwriting.default"
@@ -132,11 +132,7 @@ CLAIMS = (
         "C5.09",
         "5.A",
         "Adding features goes on lowering the error, where the DMP+ is stuck with its kernels.",
-        every(
-            less("letter_accuracy.largest_step_n5", 1.0),
-            less("letter_accuracy.largest_step_n20", 1.0),
-            beyond_dmp_plus("idmp60"),
-        ),
+        every(less(".largest_step_n5", 1.0), less(".largest_step_n20", 1.0), beyond_dmp_plus("idmp60")),
         control=beyond_dmp_plus("dmp_equal"),
         printed=beyond_dmp_plus("idmp60", PRINTED_SIGN),
         credits="features that depend on the kernels nonlinearly",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dexrepro.claims import Predicate, about, every, greater, less
 
-CROSSING = "obstacle_crossing.default"
-PRINTED_CROSSING = "obstacle_crossing.printed_damping"
+CROSSING = ".default"
+PRINTED_CROSSING = ".printed_damping"
 
 
 def one_block_only(case: str, skill: int = 1) -> Predicate:
@@ -47,12 +47,12 @@ CLAIMS = (
         "C5.22",
         "The curves change less and less until the final one.",
         shrinks(CROSSING),
-        control=shrinks("obstacle_crossing.relearn"),
+        control=shrinks(".relearn"),
         printed=shrinks(PRINTED_CROSSING),
         readings={
             "at every step of the median of the draws": every(
                 *(less(f"{CROSSING}.skill{b}.largest_step", 1.0) for b in (2, 3))
-            ),
+            )
         },
         note="The path changes less at every step in {.default.skill2.shrinks_always:.0%} of the "
         "draws with two blocks and {.default.skill3.shrinks_always:.0%} with three.",
@@ -79,12 +79,12 @@ CLAIMS = (
     fig_5_8(
         "C5.25",
         "The same holds with the forcing scaled by g - x0 on every axis, as printed.",
-        reaches_goals("obstacle_crossing.printed_amplitude"),
-        control=reaches_goals("obstacle_crossing.printed_amplitude", "missed"),
+        reaches_goals(".printed_amplitude"),
+        control=reaches_goals(".printed_amplitude", "missed"),
         readings={
             "to half a centimetre, a quarter of the distance of the goals": reaches_goals(
-                "obstacle_crossing.printed_amplitude", within=0.5
-            ),
+                ".printed_amplitude", within=0.5
+            )
         },
         searched="goals at the height where the demonstration ends and at that of its start, a little lower, where the "
         "amplitude vanishes; how near to the goal is there",

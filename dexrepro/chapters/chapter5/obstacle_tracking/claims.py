@@ -7,8 +7,7 @@ from dexrepro.claims import Claim, Predicate, every, greater, less
 
 def follows(*cases: str) -> Predicate:
     return every(
-        *(less(f"obstacle_tracking.{case}.bound_use", 1.0) for case in cases),
-        *(greater(f"obstacle_tracking.{case}.clearance", 0.0) for case in cases),
+        *(less(f".{case}.bound_use", 1.0) for case in cases), *(greater(f".{case}.clearance", 0.0) for case in cases)
     )
 
 
@@ -18,10 +17,7 @@ CLAIMS = (
         "5.9",
         "Under the adaptive controller the arm follows the generalised skills with limited errors and without conflict "
         "with the obstacle.",
-        every(
-            less("obstacle_tracking.largest_bound_use", 1.0),
-            greater("obstacle_tracking.least_clearance", 0.0),
-        ),
+        every(less(".largest_bound_use", 1.0), greater(".least_clearance", 0.0)),
         control=follows("pd_two", "pd_three"),
         printed=follows("printed"),
         credits="the adaptive neural law and its barrier",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dexrepro.claims import about, greater, less
 
-REAL, ROUGH = "real_handwriting.default", "real_handwriting.rough"
+REAL, ROUGH = ".default", ".rough"
 
 ours_5_h = about("5.H", source="ours")
 CLAIMS = (

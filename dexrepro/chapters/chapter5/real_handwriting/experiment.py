@@ -141,8 +141,8 @@ def of_shapes(draws: pd.DataFrame, config: Config) -> tuple[dict[str, Metrics], 
         part = Recording(frames={"draws": draws[draws["shape"] == shape]})
         found[shape] = letter_accuracy.measure(part, settings)
         over = letter_accuracy.summarise({"default": found[shape]}, settings)
-        values = {f"letter_accuracy.default.{key}": value for key, value in found[shape].items()}
-        values |= {f"letter_accuracy.{key}": value for key, value in over.items()}
+        values = {f".default.{key}": value for key, value in found[shape].items()}
+        values |= {f".{key}": value for key, value in over.items()}
         for claim in CLAIMS:
             margins = [p.margin(values) if p else None for p in (claim.predicate, claim.control)]
             rows.append((shape, claim.id, claim.source, *margins))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dexrepro.chapters.chapter5.statements import TARGETS
 from dexrepro.claims import Claim, Predicate, about, every, greater, less, within
 
-STYLES = "style_transformation.default"
-PRINTED_STYLES = "style_transformation.printed_damping"
+STYLES = ".default"
+PRINTED_STYLES = ".printed_damping"
 
 
 def of_all(measure: str, bound: float, case: str = STYLES, letters: tuple[str, ...] = TARGETS) -> Predicate:
@@ -35,9 +35,9 @@ CLAIMS = (
         "C5.11",
         "The shapes move gradually from a to the target as features are added.",
         gradual(STYLES),
-        control=gradual("style_transformation.relearn"),
-        printed=gradual("style_transformation.printed_start"),
-        readings={"both blocks of weights learned anew, as (5.29) has it": gradual("style_transformation.relearn")},
+        control=gradual(".relearn"),
+        printed=gradual(".printed_start"),
+        readings={"both blocks of weights learned anew, as (5.29) has it": gradual(".relearn")},
         note="With the weights of the new features alone, as line 18 of Algorithm 5.1 has it. (5.29) as a whole, its "
         "start corrected, jumps with the first five features to "
         "{.relearn.z.first_step:.1%} of the distance to z; as printed it leads away from it.",
@@ -46,12 +46,9 @@ CLAIMS = (
         "C5.12",
         "Shapes near the centre resemble a more.",
         of_all("leaves_base", 0.9),
-        control=of_all("leaves_base", 0.9, "style_transformation.relearn"),
+        control=of_all("leaves_base", 0.9, ".relearn"),
         printed=of_all("leaves_base", 0.9, PRINTED_STYLES),
-        readings={
-            f"{count} initial kernels": of_all("leaves_base", 0.9, f"style_transformation.n{count}")
-            for count in (15, 20, 30, 40)
-        },
+        readings={f"{count} initial kernels": of_all("leaves_base", 0.9, f".n{count}") for count in (15, 20, 30, 40)},
         note="At every step in every draw with 25 kernels, whose number the book does not print; with 20, k does so in "
         "{.n20.k.leaves_base:.0%} of the draws.",
     ),
@@ -68,10 +65,8 @@ CLAIMS = (
         "z and k arrive early, w and l late.",
         greater(f"{STYLES}.early_order", 0.5),
         readings={
-            **{
-                f"{n} initial kernels": greater(f"style_transformation.n{n}.early_order", 0.5) for n in (15, 20, 30, 40)
-            },
-            "other shapes of the letters": greater("style_transformation.shapes.early_order", 0.5),
+            **{f"{n} initial kernels": greater(f".n{n}.early_order", 0.5) for n in (15, 20, 30, 40)},
+            "other shapes of the letters": greater(".shapes.early_order", 0.5),
         },
         searched="initial kernels from 15 to 40, and hands whose via points move by a tenth of the letters' size",
         no_control="the order is a property of the shapes written, which the book shows and does not print",
@@ -83,7 +78,7 @@ CLAIMS = (
         "C5.15",
         "Small differences to the demonstrations remain after 30 features, a compromise between the letters.",
         small_difference(STYLES),
-        control=small_difference("style_transformation.alone", ("w",)),
+        control=small_difference(".alone", ("w",)),
         printed=small_difference(PRINTED_STYLES),
         credits="features common to all letters",
         note="For a letter alone on the same features, the control, the difference is the same: w "

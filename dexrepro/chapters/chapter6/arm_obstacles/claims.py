@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, every, greater, less
 
-ARM = "arm_obstacles"
-
 
 def passes(case: str) -> Predicate:
-    return every(*(greater(f"{ARM}.{case}.distance_{box}", 0.0) for box in ("first", "second", "new")))
+    return every(*(greater(f".{case}.distance_{box}", 0.0) for box in ("first", "second", "new")))
 
 
 CLAIMS = (
@@ -16,7 +14,7 @@ CLAIMS = (
         "C6.16",
         "6.4",
         "The arm on the original path hits the new box.",
-        less(f"{ARM}.original.distance_new", 0.0),
+        less(".original.distance_new", 0.0),
         where="6.4.1",
         by_construction="the box was placed across the path",
     ),

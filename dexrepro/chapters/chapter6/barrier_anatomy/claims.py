@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, every, greater
 
-ANATOMY = "barrier_anatomy"
-
 CLAIMS = (
     Claim(
         "C6.10",
         "6.B",
         "A larger k_2 gives a larger tracking error.",
-        every(*(greater(f"{ANATOMY}.{law}.k2_slope", 0.0) for law in ("printed", "feedforward"))),
+        every(*(greater(f".{law}.k2_slope", 0.0) for law in ("printed", "feedforward"))),
         readings={
             "explicit steps on the printed 100 points, with the recorded acceleration": greater(
-                f"{ANATOMY}.feedforward.coarse_decades", 0.0
+                ".feedforward.coarse_decades", 0.0
             ),
-            "the same with the law as printed in (6.15)": greater(f"{ANATOMY}.printed.coarse_decades", 0.0),
+            "the same with the law as printed in (6.15)": greater(".printed.coarse_decades", 0.0),
         },
         no_control="it names no cause; where k_2 does not act there is nothing to compare",
         searched=(

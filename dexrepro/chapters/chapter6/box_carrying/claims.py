@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, every, greater, less
 
-BOX = "box_carrying"
-
 
 def carried(case: str) -> Predicate:
-    return every(less(f"{BOX}.{case}.box_error_max", 2.0), greater(f"{BOX}.{case}.min_palm_force", 0.0))
+    return every(less(f".{case}.box_error_max", 2.0), greater(f".{case}.min_palm_force", 0.0))
 
 
 CLAIMS = (

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, every, less
 
-CASES = "constraint_cases"
 FOUR = ("asymmetric_inside", "symmetric_inside", "symmetric_outside", "asymmetric_outside")
 
 
 def falls(*cases: str, measure: str = "rising_states") -> Predicate:
-    return every(*(less(f"{CASES}.{case}.{measure}", 0.5) for case in cases))
+    return every(*(less(f".{case}.{measure}", 0.5) for case in cases))
 
 
 CLAIMS = (
@@ -31,7 +30,7 @@ CLAIMS = (
         "C6.13",
         "T6.2",
         "One expression of the extra term serves all constraint cases.",
-        every(*(less(f"{CASES}.{case}.worst_rate", 0.0) for case in FOUR)),
+        every(*(less(f".{case}.worst_rate", 0.0) for case in FOUR)),
         where="Remark 6.5",
         by_construction="one function computes it for all cases; only the pull and the share of the barrier differ",
     ),

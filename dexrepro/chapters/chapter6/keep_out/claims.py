@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from dexrepro.claims import Predicate, about, every, greater, less
 
-OUT = "keep_out"
-
 
 def passes(*cases: str) -> Predicate:
     return every(
-        *(greater(f"{OUT}.{case}.distance_share", 1.0) for case in cases),
-        *(less(f"{OUT}.{case}.goal_error_worst", 0.05) for case in cases),
+        *(greater(f".{case}.distance_share", 1.0) for case in cases),
+        *(less(f".{case}.goal_error_worst", 0.05) for case in cases),
     )
 
 
@@ -27,9 +25,9 @@ CLAIMS = (
         "With the outside constraints of Table 6.2 about an obstacle, the path converges to the goal (Remark 6.2).",
         every(
             *(
-                less(f"{OUT}.still_{law}.goal_error", 0.2)
+                less(f".still_{law}.goal_error", 0.2)
                 for law in ("consistent", "printed", "feedforward", "printed_h2", "feedforward_h2")
-            ),
+            )
         ),
         no_control="it fails itself, and a primitive without constraint arrives",
         searched="three readings of the acceleration, the barrier's weight 1 and H^2, three places of the obstacle",

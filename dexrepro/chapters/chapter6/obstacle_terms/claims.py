@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from dexrepro.claims import Predicate, about, every, greater, less
 
-TERMS = "obstacle_terms"
-
 STEERING = ("centroid", "closest", "boundary")
 
 
 def blocked(measure: str, *methods: str, widths: tuple[int, ...] = (20, 30)) -> Predicate:
-    return every(*(less(f"{TERMS}.{name}.bars_{measure}_{width}mm", 2.5) for name in methods for width in widths))
+    return every(*(less(f".{name}.bars_{measure}_{width}mm", 2.5) for name in methods for width in widths))
 
 
 def dearer(than: str, operations: str = "operations") -> Predicate:
-    return greater(f"{TERMS}.constrained.{operations}", f"{TERMS}.{than}")
+    return greater(f".constrained.{operations}", f".{than}")
 
 
 fig_6_d = about("6.D", "6.5, point 1")
@@ -23,11 +21,9 @@ CLAIMS = (
     fig_6_d(
         "C6.25",
         "The steering term of [16] has a dead zone around a head-on approach.",
-        less(f"{TERMS}.centroid.aligned_distance", 0.1),
-        control=less(f"{TERMS}.potential.aligned_distance", 0.1),
-        readings={
-            "offsets of a millionth of a centimetre and more": less(f"{TERMS}.centroid.nearly_aligned_distance", 0.1)
-        },
+        less(".centroid.aligned_distance", 0.1),
+        control=less(".potential.aligned_distance", 0.1),
+        readings={"offsets of a millionth of a centimetre and more": less(".centroid.nearly_aligned_distance", 0.1)},
         note="For exact alignment with a point only: from an offset of a millionth of a centimetre on the path passes "
         "at {.centroid.nearly_aligned_distance:.2f} cm. The potential of [39], the control, keeps "
         "{.potential.aligned_distance:.2f} cm off even an aligned point.",
@@ -35,7 +31,7 @@ CLAIMS = (
     fig_6_d(
         "C6.26",
         "The reaction of the steering term fades as the heading narrows towards the obstacle.",
-        less(f"{TERMS}.steering_at_001", f"{TERMS}.steering_peak", 0.25),
+        less(".steering_at_001", ".steering_peak", 0.25),
         by_construction="an identity: phi exp(-beta phi) vanishes with phi",
     ),
     fig_6_d(
@@ -77,22 +73,22 @@ CLAIMS = (
     fig_6_d(
         "C6.29",
         "A bound of the measurement noise can be added to the margin.",
-        every(less(f"{TERMS}.constrained.noise_excess", 0.0), greater(f"{TERMS}.constrained.noise_clearance", 0.0)),
+        every(less(".constrained.noise_excess", 0.0), greater(".constrained.noise_clearance", 0.0)),
         where="6.5, point 3",
         by_construction="the triangle inequality: the margin is kept about a reference that errs by the noise at most",
     ),
     ours_6_d(
         "C6.43",
         "Tuned over 20 settings, steering passes the triangle with every representation of it.",
-        every(*(greater(f"{TERMS}.{name}.tuned_clearance", 0.0) for name in ("centroid", "closest", "boundary"))),
+        every(*(greater(f".{name}.tuned_clearance", 0.0) for name in ("centroid", "closest", "boundary"))),
     ),
     ours_6_d(
         "C6.44",
         "The dynamic potential of [39] with the closest point passes the triangle and stops before every bar.",
         every(
-            greater(f"{TERMS}.potential.clearance", 0.0),
-            less(f"{TERMS}.potential.goal_error", 0.2),
-            *(less(f"{TERMS}.potential.bars_passed_{w}mm", 0.5) for w in (3, 6, 10, 15, 20, 30)),
+            greater(".potential.clearance", 0.0),
+            less(".potential.goal_error", 0.2),
+            *(less(f".potential.bars_passed_{w}mm", 0.5) for w in (3, 6, 10, 15, 20, 30)),
         ),
     ),
 )

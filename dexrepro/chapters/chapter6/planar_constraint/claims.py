@@ -4,36 +4,35 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, about, every, greater, less, within
 
-LAW = "planar_constraint"
 READINGS = ("consistent", "printed", "feedforward")
 BARRIER = "the barrier of (6.9)"
 
 
 def kept(*cases: str) -> Predicate:
-    return every(*(less(f"{LAW}.{case}.violated_groups", 0.5) for case in cases))
+    return every(*(less(f".{case}.violated_groups", 0.5) for case in cases))
 
 
 def in_tube(*cases: str) -> Predicate:
-    return every(*(less(f"{LAW}.{case}.e_share", 1.0) for case in cases))
+    return every(*(less(f".{case}.e_share", 1.0) for case in cases))
 
 
 def at_the_arc(*cases: str) -> Predicate:
     return every(
-        *(greater(f"{LAW}.{case}.peak_in_arc", 0.99) for case in cases),
-        *(less(f"{LAW}.{case}.settle_after_arc", 0.6) for case in cases),
+        *(greater(f".{case}.peak_in_arc", 0.99) for case in cases),
+        *(less(f".{case}.settle_after_arc", 0.6) for case in cases),
     )
 
 
 def arrives(*cases: str) -> Predicate:
-    return every(*(less(f"{LAW}.{case}.goal_error", 0.02) for case in cases))
+    return every(*(less(f".{case}.goal_error", 0.02) for case in cases))
 
 
 def clears(*cases: str) -> Predicate:
-    return every(*(greater(f"{LAW}.{case}.clearance", 0.0) for case in cases))
+    return every(*(greater(f".{case}.clearance", 0.0) for case in cases))
 
 
 def never_rises(case: str) -> Predicate:
-    return less(f"{LAW}.{case}.v_rises", 0.5)
+    return less(f".{case}.v_rises", 0.5)
 
 
 fig_6_2d = about("6.2d", "6.4.1")
@@ -88,11 +87,8 @@ CLAIMS = (
         "C6.11",
         "6.2a",
         "alpha_z, beta_z = alpha_z / 4 make (6.1) and (6.15) critically damped.",
-        every(
-            within(f"{LAW}.feedforward.damping_primitive", 0.99, 1.01),
-            within(f"{LAW}.feedforward.damping_error", 0.99, 1.01),
-        ),
-        readings={"(6.15) without its extra term, (6.22)": within(f"{LAW}.feedforward.damping_primitive", 0.99, 1.01)},
+        every(within(".feedforward.damping_primitive", 0.99, 1.01), within(".feedforward.damping_error", 0.99, 1.01)),
+        readings={"(6.15) without its extra term, (6.22)": within(".feedforward.damping_primitive", 0.99, 1.01)},
         no_control="arithmetic on the printed values",
         where="Remark 6.6",
         note="Under the law the error has the poles k_z / d_z and k_2, 6 and 10 1/s, a damping ratio of "
@@ -111,17 +107,12 @@ CLAIMS = (
     fig_6_2d(
         "C6.14",
         "The extra term does not influence the learned skill: the weights stay as they are.",
-        every(*(less(f"{LAW}.{law}.weights_changed", 1e-12) for law in READINGS)),
+        every(*(less(f".{law}.weights_changed", 1e-12) for law in READINGS)),
         where="6.5",
         by_construction="the extra term acts on the movement, nothing is learned anew",
         note="What the skill still contributes to the movement is another matter, see C6.36.",
     ),
-    fig_6_2d(
-        "C6.15",
-        "The constrained path clears all obstacles.",
-        clears(*READINGS),
-        control=clears("none"),
-    ),
+    fig_6_2d("C6.15", "The constrained path clears all obstacles.", clears(*READINGS), control=clears("none")),
     ours_6_2d(
         "C6.34",
         "With the discrete projection the constraint is kept by every reading, margin and time constant tried.",
@@ -131,7 +122,7 @@ CLAIMS = (
     ours_6_2d(
         "C6.36",
         "The constrained movement still depends on the learned weights under every reading of the law.",
-        every(*(greater(f"{LAW}.{law}.weight_effect", 0.01) for law in READINGS)),
+        every(*(greater(f".{law}.weight_effect", 0.01) for law in READINGS)),
         where="6.5",
         note="Not under the consistent law, the one that the proof holds for: it cancels the primitive altogether.",
     ),
@@ -140,11 +131,11 @@ CLAIMS = (
         "With tau = 1 s the tracking gains alone leave the tube; a barrier weighted by H^2 keeps it (law with the "
         "recorded acceleration).",
         every(
-            greater(f"{LAW}.tau1_no_barrier.e_share", 1.0),
-            less(f"{LAW}.tau1_feedforward_h2.e_share", 1.0),
+            greater(".tau1_no_barrier.e_share", 1.0),
+            less(".tau1_feedforward_h2.e_share", 1.0),
             kept("tau1_feedforward_h2"),
         ),
-        control=every(greater(f"{LAW}.no_barrier.e_share", 1.0), kept("feedforward")),
+        control=every(greater(".no_barrier.e_share", 1.0), kept("feedforward")),
         where="(6.9)",
         note="The path rides the barrier, at {.tau1_feedforward_h2.e_share:.4f} of the tube; the "
         "literal law (6.15) with that weight leaves it at steps of 1 ms in "
@@ -170,8 +161,8 @@ CLAIMS = (
     fig_6_2d(
         "C6.48",
         "Only part of the previous path is modified.",
-        every(*(less(f"{LAW}.{law}.modified_share", 0.5) for law in READINGS)),
-        control=less(f"{LAW}.feedforward.extended_modified_share", 0.5),
+        every(*(less(f".{law}.modified_share", 0.5) for law in READINGS)),
+        control=less(".feedforward.extended_modified_share", 0.5),
         where="6.5, point 3",
         note="{.feedforward.modified_share:.0%} of sub-skill 2 lies off the previous path; of its "
         "extended primitive, the control, {.feedforward.extended_modified_share:.0%}.",

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, about, every, greater, less, within
 
-SKILL = "planar_skill"
-
 
 def crosses_old(case: str) -> Predicate:
     return every(
-        greater(f"{SKILL}.{case}.inside_share_extended_old_min", 0.0),
-        *(less(f"{SKILL}.{case}.clearance_extended_{i}_old_max", 0.0) for i in (1, 2)),
+        greater(f".{case}.inside_share_extended_old_min", 0.0),
+        *(less(f".{case}.clearance_extended_{i}_old_max", 0.0) for i in (1, 2)),
     )
 
 
@@ -20,11 +18,11 @@ CLAIMS = (
         "C6.01",
         "The demonstrations are cut into the two sub-skills.",
         every(
-            within(f"{SKILL}.book.pauses_fewest_min", 0.5, 1.5),
-            within(f"{SKILL}.book.pauses_most_max", 0.5, 1.5),
-            less(f"{SKILL}.book.pause_error_max", 0.3),
+            within(".book.pauses_fewest_min", 0.5, 1.5),
+            within(".book.pauses_most_max", 0.5, 1.5),
+            less(".book.pause_error_max", 0.3),
         ),
-        control=within(f"{SKILL}.book.pauses_in_one_max", 0.5, 1.5),
+        control=within(".book.pauses_in_one_max", 0.5, 1.5),
         note="Pauses stand in for the book's BP-AR-HMM: where they lie and how many there are is found, in every "
         "demonstration one, within {.book.pause_error_max:.2f} s; in a sub-skill alone, the control, none. "
         "The skills are learned from the change point of a library, which is told that there is one and errs by up to "
@@ -34,21 +32,21 @@ CLAIMS = (
     fig_6_2a(
         "C6.02",
         "The learned path collides with the new block but not with the old obstacles.",
-        every(less(f"{SKILL}.book.clearance_new_max", 0.0), greater(f"{SKILL}.book.clearance_old_min", 0.0)),
+        every(less(".book.clearance_new_max", 0.0), greater(".book.clearance_old_min", 0.0)),
         by_construction="the block was placed across the demonstrations",
     ),
     fig_6_2a(
         "C6.03",
         "The new block concerns the second sub-skill alone.",
-        greater(f"{SKILL}.book.clearance_first_new_min", 1.0),
+        greater(".book.clearance_first_new_min", 1.0),
         by_construction="the block was placed across the demonstrations",
     ),
     Claim(
         "C6.04",
         "6.2b",
         "The interpolated reference clears all obstacles by more than the margin and keeps most of the learned path.",
-        every(greater(f"{SKILL}.book.clearance_reference_min", 0.5), greater(f"{SKILL}.book.kept_share_min", 0.5)),
-        control=greater(f"{SKILL}.book.clearance_extended_2_min", 0.5),
+        every(greater(".book.clearance_reference_min", 0.5), greater(".book.kept_share_min", 0.5)),
+        control=greater(".book.clearance_extended_2_min", 0.5),
         where="6.4.1",
         note="The control is the reference by extended primitives.",
     ),
@@ -57,7 +55,7 @@ CLAIMS = (
         "6.2c",
         "The reference by extended primitives crosses the original obstacles.",
         crosses_old("book"),
-        control=less(f"{SKILL}.book.clearance_reference_max", 0.0),
+        control=less(".book.clearance_reference_max", 0.0),
         readings={
             "intervals cut inside of sub-skill 2, where the constraint begins and ends": crosses_old("local_intervals")
         },
@@ -74,10 +72,10 @@ CLAIMS = (
         "Which of the two ways to a reference is better depends on the task: interpolation keeps clear of obstacles, "
         "an extended primitive follows a goal that moves.",
         every(
-            greater(f"{SKILL}.book.clearance_reference_min", f"{SKILL}.book.clearance_extended_2_max"),
-            less(f"{SKILL}.book.moved_goal_extended_max", f"{SKILL}.book.moved_goal_reference_min", 0.1),
+            greater(".book.clearance_reference_min", ".book.clearance_extended_2_max"),
+            less(".book.moved_goal_extended_max", ".book.moved_goal_reference_min", 0.1),
         ),
-        control=less(f"{SKILL}.book.acceleration_extended_max", f"{SKILL}.book.acceleration_reference_min"),
+        control=less(".book.acceleration_extended_max", ".book.acceleration_reference_min"),
         where="6.4.1",
         by_construction="the goal of a primitive is a parameter, fixed points know none",
         note="The book names no measure. The goal moves by {.book.moved_goal_reference_max:.1f} cm after the reference "

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, Reference, every, greater, less
 
-HANDS = "skeleton_constraints"
-UNPROJECTED = {
-    "with the recorded acceleration (6.12)": "unprojected",
-    "as printed in (6.15)": "unprojected_printed",
-}
+UNPROJECTED = {"with the recorded acceleration (6.12)": "unprojected", "as printed in (6.15)": "unprojected_printed"}
 
 
 def within_margin(measure: str, case: str) -> Predicate:
-    return less(f"{HANDS}.{case}.{measure}_error_constrained", 1.0)
+    return less(f".{case}.{measure}_error_constrained", 1.0)
 
 
 def loop1_needed(case: str, without: str) -> Predicate:
     name = "rmse_shoulder_left_constrained"
-    return less(f"{HANDS}.{case}.{name}", f"{HANDS}.{without}.{name}", 0.3)
+    return less(f".{case}.{name}", f".{without}.{name}", 0.3)
 
 
 CLAIMS = (
@@ -25,9 +21,7 @@ CLAIMS = (
         "C6.18",
         "6.7",
         "The wrists spread about twice as far as the shoulders.",
-        every(
-            greater(f"{HANDS}.feedforward.spread_ratio_low", 1.7), less(f"{HANDS}.feedforward.spread_ratio_high", 2.6)
-        ),
+        every(greater(".feedforward.spread_ratio_low", 1.7), less(".feedforward.spread_ratio_high", 2.6)),
         where="6.4.2",
         by_construction="the measurement noise has these sizes",
     ),
@@ -36,8 +30,7 @@ CLAIMS = (
         "6.10",
         "Link lengths of the original primitives vary widely.",
         every(
-            greater(f"{HANDS}.feedforward.se_left_width_original", 15.0),
-            greater(f"{HANDS}.feedforward.ew_left_width_original", 5.0),
+            greater(".feedforward.se_left_width_original", 15.0), greater(".feedforward.ew_left_width_original", 5.0)
         ),
         where="6.4.2",
         by_construction="the common occlusion bias was chosen after the printed ranges; without it they stay narrow",
@@ -63,7 +56,7 @@ CLAIMS = (
         "6.11",
         "The range of the hand distance shrinks to within 1 cm of the box's length.",
         every(
-            greater(f"{HANDS}.unprojected_consistent.hands_width_original", 10.0),
+            greater(".unprojected_consistent.hands_width_original", 10.0),
             within_margin("hands", "unprojected_consistent"),
         ),
         control=within_margin("hands", "geometry"),
@@ -90,8 +83,8 @@ CLAIMS = (
         "C6.24",
         "6.9",
         "Noise and errors are filtered and amended by the constrained primitives.",
-        less(f"{HANDS}.feedforward.rmse_ratio_all", 0.8),
-        control=less(f"{HANDS}.geometry.rmse_ratio_all", 0.8),
+        less(".feedforward.rmse_ratio_all", 0.8),
+        control=less(".geometry.rmse_ratio_all", 0.8),
         credits="the constrained primitives",
         where="6.5",
         note="Over all six joints {.feedforward.rmse_ratio_all:.2f} of the error is left, and "
@@ -102,12 +95,12 @@ CLAIMS = (
     ),
 )
 REFERENCES = (
-    Reference(f"{HANDS}.feedforward.se_left_original_low", 12, "6.4.2", "cm"),
-    Reference(f"{HANDS}.feedforward.se_left_original_high", 52, "6.4.2", "cm"),
-    Reference(f"{HANDS}.feedforward.ew_left_original_low", 25, "6.4.2", "cm"),
-    Reference(f"{HANDS}.feedforward.ew_left_original_high", 39, "6.4.2", "cm"),
-    Reference(f"{HANDS}.feedforward.hands_original_low", 34, "6.4.2", "cm"),
-    Reference(f"{HANDS}.feedforward.hands_original_high", 57, "6.4.2", "cm"),
-    Reference(f"{HANDS}.feedforward.hands_constrained_low", 24, "6.4.2", "cm"),
-    Reference(f"{HANDS}.feedforward.hands_constrained_high", 25, "6.4.2", "cm"),
+    Reference(".feedforward.se_left_original_low", 12, "6.4.2", "cm"),
+    Reference(".feedforward.se_left_original_high", 52, "6.4.2", "cm"),
+    Reference(".feedforward.ew_left_original_low", 25, "6.4.2", "cm"),
+    Reference(".feedforward.ew_left_original_high", 39, "6.4.2", "cm"),
+    Reference(".feedforward.hands_original_low", 34, "6.4.2", "cm"),
+    Reference(".feedforward.hands_original_high", 57, "6.4.2", "cm"),
+    Reference(".feedforward.hands_constrained_low", 24, "6.4.2", "cm"),
+    Reference(".feedforward.hands_constrained_high", 25, "6.4.2", "cm"),
 )

@@ -5,20 +5,17 @@ from __future__ import annotations
 from dexrepro.claims import Claim, Predicate, about, every, greater, less, ordered
 
 PERSON = "the synthetic person reacts this way"
-FUZZY = "fuzzy_generalisation"
 
 
 def passes(*cases: str) -> Predicate:
-    return every(*(greater(f"{FUZZY}.{case}.clearance_three", 0) for case in cases))
+    return every(*(greater(f".{case}.clearance_three", 0) for case in cases))
 
 
 def usable(*cases: str) -> Predicate:
-    return every(
-        *(greater(f"{FUZZY}.{case}.{part}", 0) for case in cases for part in ("lateral_steps", "clearance_chosen"))
-    )
+    return every(*(greater(f".{case}.{part}", 0) for case in cases for part in ("lateral_steps", "clearance_chosen")))
 
 
-ORDINARY = greater(f"{FUZZY}.main.ordinary_clearance", 0)
+ORDINARY = greater(".main.ordinary_clearance", 0)
 AS_READ = "obstacle at the printed (10, 5), read in cm"
 
 
@@ -27,23 +24,23 @@ CLAIMS = (
     fig_7_9(
         "C7.16",
         "The ordinary skill carries over to a new start and end (to 0.5 mm).",
-        less(f"{FUZZY}.main.end_error", 0.05),
-        printed=less(f"{FUZZY}.printed_kinematics.end_error", 0.05),
+        less(".main.end_error", 0.05),
+        printed=less(".printed_kinematics.end_error", 0.05),
         no_control="the attractor ends at its goal whatever is learned: only an equation that is wrong can miss it",
         note="The printed form is (7.33), T X' = V'; (7.3) and (7.12) print it without the dot.",
     ),
     fig_7_9(
         "C7.17",
         "For the medium obstacle forward and right overlap at a medium level.",
-        ordered(*(f"{FUZZY}.main.separation_{h}" for h in (8, 4, 2))),
-        printed=ordered(*(f"{FUZZY}.printed_sign.separation_{h}" for h in (8, 4, 2))),
+        ordered(*(f".main.separation_{h}" for h in (8, 4, 2))),
+        printed=ordered(*(f".printed_sign.separation_{h}" for h in (8, 4, 2))),
         by_construction=f"{PERSON}, and a weighted mean lies between what it averages",
     ),
     fig_7_9(
         "C7.18",
         "The reaction to the medium obstacle lies between those to the low and the tall one.",
-        greater(f"{FUZZY}.main.between_heights", 0),
-        printed=greater(f"{FUZZY}.printed_sign.between_heights", 0),
+        greater(".main.between_heights", 0),
+        printed=greater(".printed_sign.between_heights", 0),
         by_construction="a weighted mean lies between what it averages",
     ),
     fig_7_9(
@@ -62,7 +59,7 @@ CLAIMS = (
     fig_7_9(
         "C7.20",
         "Fuzzy sets must change along with the task.",
-        every(passes("main"), greater(f"{FUZZY}.main.clearance_three", f"{FUZZY}.same_sets.clearance_three")),
+        every(passes("main"), greater(".main.clearance_three", ".same_sets.clearance_three")),
         control=passes("same_sets"),
         where="7.3.2",
         note="7.4.2 itself keeps the sets, because the board is the same; here this lowers the clearance from "
@@ -81,7 +78,7 @@ CLAIMS = (
         "C7.21b",
         "7.9",
         "Every direction in between is usable.",
-        greater(f"{FUZZY}.main.clearance_between", 0),
+        greater(".main.clearance_between", 0),
         source="ours",
         note="{.main.clearance_between:.2f} cm at worst: averaging around and over gives neither. Wider humps or sets "
         "leave {.wide_reaction.clearance_between:.2f} and {.wide_sets.clearance_between:.2f} cm.",
@@ -89,8 +86,8 @@ CLAIMS = (
     fig_7_9(
         "C7.22",
         "The generalised stiffness lies between those of the low and the tall obstacle.",
-        greater(f"{FUZZY}.main.stiffness_between", 0.99),
-        printed=greater(f"{FUZZY}.printed_sign.stiffness_between", 0.99),
+        greater(".main.stiffness_between", 0.99),
+        printed=greater(".printed_sign.stiffness_between", 0.99),
         by_construction="a weighted mean lies between what it averages",
     ),
 )

@@ -4,23 +4,22 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, about, every, greater, less
 
-TRACKING = "impedance_tracking"
-PRINTED_LAW = greater(f"{TRACKING}.printed.finished", 0.5)
+PRINTED_LAW = greater(".printed.finished", 0.5)
 CHATTER = 1.0  # N m of torque travel a joint; smooth runs have 0.15
 
 
 def stable(case: str) -> Predicate:
-    return every(greater(f"{TRACKING}.{case}.finished", 0.5), less(f"{TRACKING}.{case}.rms_error", 1.0))
+    return every(greater(f".{case}.finished", 0.5), less(f".{case}.rms_error", 1.0))
 
 
 def tracks(case: str) -> Predicate:
-    return every(less(f"{TRACKING}.{case}.rms_error", 0.05), less(f"{TRACKING}.{case}.torque_travel", CHATTER))
+    return every(less(f".{case}.rms_error", 0.05), less(f".{case}.torque_travel", CHATTER))
 
 
 def absorbs(exact: str, encoders: str) -> Predicate:
     """A tenth of the error of the same law without estimation or integral, with each sensing."""
     pairs = ((exact, "no_estimation"), (encoders, "encoders_no_estimation"))
-    return every(*(less(f"{TRACKING}.{case}.rms_error", f"{TRACKING}.{plain}.rms_error", 0.1) for case, plain in pairs))
+    return every(*(less(f".{case}.rms_error", f".{plain}.rms_error", 0.1) for case, plain in pairs))
 
 
 fig_7_11 = about("7.11", "7.4.3")
@@ -57,16 +56,16 @@ CLAIMS = (
     ours_7_11(
         "C7.27b",
         "With encoders the delayed torque must pass the velocity's filter.",
-        less(f"{TRACKING}.encoders.rms_error", f"{TRACKING}.encoders_unmatched.rms_error", 0.1),
+        less(".encoders.rms_error", ".encoders_unmatched.rms_error", 0.1),
     ),
     Claim(
         "C7.29",
         "7.B",
         "(7.40) ensures stability where k_s is too small.",
-        less(f"{TRACKING}.jumps_robust.rms_error", f"{TRACKING}.jumps_no_gain.rms_error", 0.1),
-        control=less(f"{TRACKING}.jumps_constant.rms_error", f"{TRACKING}.jumps_no_gain.rms_error", 0.1),
+        less(".jumps_robust.rms_error", ".jumps_no_gain.rms_error", 0.1),
+        control=less(".jumps_constant.rms_error", ".jumps_no_gain.rms_error", 0.1),
         credits="the maximum in (7.40)",
-        printed=less(f"{TRACKING}.jumps_robust_printed.rms_error", f"{TRACKING}.jumps_no_gain.rms_error", 0.1),
+        printed=less(".jumps_robust_printed.rms_error", ".jumps_no_gain.rms_error", 0.1),
         where="7.3.3",
         note="Force jumps below eps. With Gamma just above alpha and a boundary layer, which r never leaves: a "
         "constant K of Gamma eps over the layer gives {.jumps_constant.rms_error:.3g} mm, (7.40) "
@@ -75,14 +74,14 @@ CLAIMS = (
     ours_7_11(
         "C7.32",
         "Muscle-like impedance tracks better than its mean as a constant.",
-        less(f"{TRACKING}.muscle.rms_error", f"{TRACKING}.constant_mean.rms_error"),
+        less(".muscle.rms_error", ".constant_mean.rms_error"),
         note="{.muscle.rms_error:.2g} and {.constant_mean.rms_error:.2g} mm; the "
         "text claims stability and tracking only.",
     ),
     ours_7_11(
         "C7.32e",
         "Tuned alike, muscle-like impedance tracks better than a constant one.",
-        less(f"{TRACKING}.tuned_muscle.rms_error", f"{TRACKING}.tuned_constant.rms_error"),
+        less(".tuned_muscle.rms_error", ".tuned_constant.rms_error"),
         note="Twelve pairs of gains each.",
     ),
     fig_7_11(
@@ -100,7 +99,7 @@ CLAIMS = (
     ours_7_11(
         "C7.33b",
         "It does so against tuned gains without it, too.",
-        less(f"{TRACKING}.tuned_muscle.rms_error", f"{TRACKING}.tuned_no_estimation.rms_error", 0.01),
+        less(".tuned_muscle.rms_error", ".tuned_no_estimation.rms_error", 0.01),
         note="So does integral action: {.tuned_no_estimation.rms_error:.3g} mm become "
         "{.tuned_integral.rms_error:.2g} mm.",
     ),

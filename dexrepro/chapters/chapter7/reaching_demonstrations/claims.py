@@ -6,8 +6,8 @@ from dexrepro.claims import about, every, greater, less
 
 PERSON = "the synthetic person reacts this way"
 MUSCLE = "the synthetic muscle stiffens this way"
-DEMONSTRATIONS = "reaching_demonstrations.corrected"
-PRINTED_SIGN = "reaching_demonstrations.printed_sign"
+DEMONSTRATIONS = ".corrected"
+PRINTED_SIGN = ".printed_sign"
 
 fig_7_6 = about("7.6", "7.4.1")
 fig_7_7 = about("7.7", "7.4.1")

@@ -4,21 +4,13 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, about, every, greater, less, ordered
 
-LEARNING = "reactive_learning"
-
 
 def gradual(case: str) -> Predicate:
-    return every(
-        ordered(*(f"{LEARNING}.{case}.rmse{groups}" for groups in (5, 2, 1))),
-        greater(f"{LEARNING}.{case}.falling_draws", 0.99),
-    )
+    return every(ordered(*(f".{case}.rmse{groups}" for groups in (5, 2, 1))), greater(f".{case}.falling_draws", 0.99))
 
 
 def to_the_floor(case: str) -> Predicate:
-    return every(
-        ordered(*(f"{LEARNING}.{case}.rmse{groups}" for groups in (8, 5, 2, 1))),
-        less(f"{LEARNING}.{case}.rmse8", 0.015),
-    )
+    return every(ordered(*(f".{case}.rmse{groups}" for groups in (8, 5, 2, 1))), less(f".{case}.rmse8", 0.015))
 
 
 fig_7_8 = about("7.8", "7.4.1")
@@ -35,17 +27,17 @@ CLAIMS = (
         "C7.10b",
         "7.8",
         "One group leaves a visible error when the old nodes' weights are fitted again, too.",
-        greater(f"{LEARNING}.refit.rmse1", f"{LEARNING}.refit.spread"),
+        greater(".refit.rmse1", ".refit.spread"),
         source="ours",
         note="The old kernels alone already fit the reactions to {.refit.plain_refit:.1g} cm.",
     ),
     fig_7_8(
         "C7.11",
         "The final reactions represent the classes with minor errors.",
-        less(f"{LEARNING}.frozen.shown_rmse", f"{LEARNING}.frozen.spread"),
-        control=less(f"{LEARNING}.frozen.plain_refit", f"{LEARNING}.frozen.spread"),
+        less(".frozen.shown_rmse", ".frozen.spread"),
+        control=less(".frozen.plain_refit", ".frozen.spread"),
         credits="the enhancement nodes",
-        printed=less(f"{LEARNING}.printed_sign.shown_rmse", f"{LEARNING}.printed_sign.spread"),
+        printed=less(".printed_sign.shown_rmse", ".printed_sign.spread"),
         note="The eight kernels of the primitive alone, fitted again, err by {.frozen.plain_refit:.2g} cm, with five "
         "groups of enhancement nodes {.frozen.shown_rmse:.2g} cm; repetitions spread by {.frozen.spread:.2g} cm.",
     ),
@@ -53,7 +45,7 @@ CLAIMS = (
         "C7.12",
         "More enhancement nodes approach any trajectory.",
         to_the_floor("frozen"),
-        control=less(f"{LEARNING}.frozen.plain_refit", 0.015),
+        control=less(".frozen.plain_refit", 0.015),
         printed=to_the_floor("printed_sign"),
         where="Remark 7.2",
         note="Down to a floor of {.frozen.rmse8:.1g} cm, which the smoothing of the demonstrations "
@@ -62,12 +54,10 @@ CLAIMS = (
     fig_7_8(
         "C7.13",
         "Reactions keep start and end (to 1 mm).",
-        less(f"{LEARNING}.frozen.end_error5", 0.1),
-        printed=less(f"{LEARNING}.printed_sign.end_error5", 0.1),
+        less(".frozen.end_error5", 0.1),
+        printed=less(".printed_sign.end_error5", 0.1),
         readings={
-            "while they are being learned, too": every(
-                less(f"{LEARNING}.frozen.end_error1", 0.1), less(f"{LEARNING}.frozen.end_error2", 0.1)
-            )
+            "while they are being learned, too": every(less(".frozen.end_error1", 0.1), less(".frozen.end_error2", 0.1))
         },
         no_control="an attractor whose forcing fades ends at its goal: only half-learned or wrong forcing misses it",
         where="7.3.1",
@@ -77,14 +67,14 @@ CLAIMS = (
     fig_7_8(
         "C7.14",
         "The ordinary skill is preserved beside the reactions.",
-        less(f"{LEARNING}.frozen.ordinary_change", 1e-9),
+        less(".frozen.ordinary_change", 1e-9),
         by_construction="ordinary and reactive forcing terms are stored apart",
         where="7.4.3",
     ),
     fig_7_8(
         "C7.34",
         "The method realises life-long learning: what was learned stays.",
-        less(f"{LEARNING}.frozen.ordinary_change", 1e-9),
+        less(".frozen.ordinary_change", 1e-9),
         by_construction="every condition has weights of its own, which nothing learned later touches",
         where="7.5",
         note="That it copes with more complex tasks no experiment of the chapter touches.",

@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, Predicate, every, less
 
-STYLES = "style_separation"
-
 
 def represented(case: str, rank: int) -> Predicate:
     """Errors below the spread of repetitions, and no reaction touches its obstacle."""
-    return every(
-        less(f"{STYLES}.{case}.mean{rank}", f"{STYLES}.{case}.spread"),
-        less(f"{STYLES}.{case}.collisions{rank}", 0.5),
-    )
+    return every(less(f".{case}.mean{rank}", f".{case}.spread"), less(f".{case}.collisions{rank}", 0.5))
 
 
 CLAIMS = (

@@ -4,28 +4,23 @@ from __future__ import annotations
 
 from dexrepro.claims import Claim, about, every, less
 
-UNSEEN = "unseen_conditions"
-
 ours_7_c = about("7.C", source="ours")
 CLAIMS = (
     ours_7_c(
         "C7.23",
         "Leaving one condition out, fuzzy rules are closer than the nearest demonstration, on average.",
-        less(f"{UNSEEN}.main.left_out_fuzzy", f"{UNSEEN}.main.left_out_nearest"),
+        less(".main.left_out_fuzzy", ".main.left_out_nearest"),
         note="On the mean: they win {.main.left_out_wins:.0f} of twelve conditions.",
     ),
     ours_7_c(
         "C7.24",
         "In unseen conditions fuzzy rules are closer than the nearest demonstration and touch less.",
-        every(
-            less(f"{UNSEEN}.main.unseen_fuzzy", f"{UNSEEN}.main.unseen_nearest"),
-            less(f"{UNSEEN}.main.touches_fuzzy", f"{UNSEEN}.main.touches_nearest"),
-        ),
+        every(less(".main.unseen_fuzzy", ".main.unseen_nearest"), less(".main.touches_fuzzy", ".main.touches_nearest")),
     ),
     ours_7_c(
         "C7.24b",
         "In unseen conditions fuzzy rules are closer than a plane a direction.",
-        less(f"{UNSEEN}.main.unseen_fuzzy", f"{UNSEEN}.main.unseen_plane"),
+        less(".main.unseen_fuzzy", ".main.unseen_plane"),
         note="The synthetic person reacts linearly to the height, which favours the plane; it touches the obstacle in "
         "{.main.touches_plane:.0%} of the conditions (fuzzy rules {.main.touches_fuzzy:.0%}) and errs by "
         "{.main.left_out_plane:.2f} cm when a condition is left out ({.main.left_out_fuzzy:.2f}).",
@@ -34,7 +29,7 @@ CLAIMS = (
         "C7.25",
         "7.C",
         "The fuzzy system can represent the reactions of its own rules (to 1 mm, for some width).",
-        less(f"{UNSEEN}.narrow.rule_worst", 0.1),
+        less(".narrow.rule_worst", 0.1),
         where="Remark 7.3",
         by_construction="with sets narrow enough one rule alone speaks at its centre",
         note="At the rules' own conditions only; what it does between them, C7.24 and C7.24b tell.",
@@ -42,7 +37,7 @@ CLAIMS = (
     ours_7_c(
         "C7.25b",
         "It does so with the widths used here.",
-        less(f"{UNSEEN}.main.rule_worst", 0.1),
+        less(".main.rule_worst", 0.1),
         note="Our widths interpolate best and leak between forward and right; no width is printed.",
     ),
 )

@@ -4,27 +4,25 @@ from __future__ import annotations
 
 from dexrepro.claims import STOPPED, Claim, Predicate, Reference, about, every, less, ordered
 
-CIRCLE = "circle_tracking"
-
 
 def _better(case: str, rival: str, part: str = "early") -> Predicate:
     """The error of a case from 5 to 10 s ("rms": to the end of the revolution) is below its rival's on both axes."""
-    return every(*(less(f"{CIRCLE}.{case}.{part}_{axis}", f"{CIRCLE}.{rival}.{part}_{axis}") for axis in "xy"))
+    return every(*(less(f".{case}.{part}_{axis}", f".{rival}.{part}_{axis}") for axis in "xy"))
 
 
 def _inside(*cases: str) -> Predicate:
-    return every(*(less(f"{CIRCLE}.{case}.bound_used", 1.0) for case in cases))
+    return every(*(less(f".{case}.bound_used", 1.0) for case in cases))
 
 
 def _rest(*cases: str) -> Predicate:
     """After 1 s the barrier function stays below its initial value."""
-    return every(*(less(f"{CIRCLE}.{case}.energy_ratio", 1.0) for case in cases))
+    return every(*(less(f".{case}.energy_ratio", 1.0) for case in cases))
 
 
 def _new_orbits(kind: str) -> Predicate:
     """On two other orbits a network keeps the bounds, where the fixed one, tuned for the first orbit, does not."""
     orbits = ("left", "high")
-    violated = (less(f"{CIRCLE}.orbit_{orbit}_fuzzy.violated_at", 10.0) for orbit in orbits)
+    violated = (less(f".orbit_{orbit}_fuzzy.violated_at", 10.0) for orbit in orbits)
     return every(_inside(*(f"orbit_{orbit}_{kind}" for orbit in orbits)), *violated)
 
 
@@ -94,18 +92,18 @@ CLAIMS = (
     fig_8_7(
         "C8.04",
         "The number of nodes grows as the thresholds fall.",
-        every(*(ordered(*(f"{CIRCLE}.{c}.nodes_{net}" for c in ("broad", "broad_2", "broad_3"))) for net in "dcg")),
+        every(*(ordered(*(f".{c}.nodes_{net}" for c in ("broad", "broad_2", "broad_3"))) for net in "dcg")),
         by_construction="nodes are as far apart as the threshold says, on the same path",
     ),
     fig_8_7(
         "C8.05",
         "With fewer nodes than the fixed network's 99 the broad network tracks better.",
         every(
-            *(less(f"{CIRCLE}.{case}.nodes", f"{CIRCLE}.fuzzy.nodes") for case in ("broad", "broad_2", "broad_3")),
+            *(less(f".{case}.nodes", ".fuzzy.nodes") for case in ("broad", "broad_2", "broad_3")),
             *(_better(case, "fuzzy") for case in ("broad", "broad_2", "broad_3")),
         ),
         control=every(
-            *(less(f"{CIRCLE}.{case}.nodes", f"{CIRCLE}.fuzzy.nodes") for case in ("node", "node_3")),
+            *(less(f".{case}.nodes", ".fuzzy.nodes") for case in ("node", "node_3")),
             *(_better(case, "fuzzy") for case in ("node", "node_3")),
         ),
         credits=STRUCTURE,
@@ -120,7 +118,7 @@ CLAIMS = (
         "C8.05f",
         "8.7",
         "It also has fewer adapted features than the fixed network, for every threshold.",
-        every(*(less(f"{CIRCLE}.{c}.features", f"{CIRCLE}.fuzzy.features") for c in ("broad", "broad_2", "broad_3"))),
+        every(*(less(f".{c}.features", ".fuzzy.features") for c in ("broad", "broad_2", "broad_3"))),
         source="ours",
     ),
     fig_8_6(
@@ -209,4 +207,4 @@ CLAIMS = (
         turns=STOPPED,
     ),
 )
-REFERENCES = (Reference(f"{CIRCLE}.fuzzy.nodes", 99, "8.4.1"),)
+REFERENCES = (Reference(".fuzzy.nodes", 99, "8.4.1"),)

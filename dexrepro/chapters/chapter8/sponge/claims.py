@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from dexrepro.claims import STOPPED, Claim, Predicate, Reference, about, every, greater, less, within
 
-SPONGE = "sponge"
-
 
 def optimal(case: str) -> Predicate:
     """K_x (negative) is to 1 % that of a regulator told the sponge."""
-    gain, best = f"{SPONGE}.{case}.gain_x", f"{SPONGE}.lqr_true.gain_x"
+    gain, best = f".{case}.gain_x", ".lqr_true.gain_x"
     return every(greater(gain, best, 1.01), less(gain, best, 0.99))
 
 
@@ -18,9 +16,9 @@ CLAIMS = (
     fig_8_13(
         "C8.16",
         "On the Baxter arm the error stays inside 0.1 m.",
-        every(less(f"{SPONGE}.learned.bound_used", 1.0), less(f"{SPONGE}.lqr.bound_used", 1.0)),
-        control=less(f"{SPONGE}.lqr_printed.bound_used", 1.0),
-        printed=less(f"{SPONGE}.at_50_hz.bound_used", 1.0),
+        every(less(".learned.bound_used", 1.0), less(".lqr.bound_used", 1.0)),
+        control=less(".lqr_printed.bound_used", 1.0),
+        printed=less(".at_50_hz.bound_used", 1.0),
         note="At the printed 50 Hz a bound is violated after {.at_50_hz.stopped_at:.2f} s on our model, which "
         "has no inner joint loops (E8.17). At 1 kHz with the arm's own gravity compensation, and with its exact "
         "inertia in what holds the redundant joints (the law itself has no model); simulated sponge.",
@@ -29,10 +27,10 @@ CLAIMS = (
     fig_8_13(
         "C8.17",
         "The learned law compresses the sponge less than the regulator.",
-        less(f"{SPONGE}.learned.final_compression", f"{SPONGE}.lqr.final_compression"),
-        control=less(f"{SPONGE}.lqr_true.final_compression", f"{SPONGE}.lqr.final_compression"),
+        less(".learned.final_compression", ".lqr.final_compression"),
+        control=less(".lqr_true.final_compression", ".lqr.final_compression"),
         credits="the adaptive impedance",
-        printed=less(f"{SPONGE}.learned.final_compression", f"{SPONGE}.lqr_printed_environment.final_compression"),
+        printed=less(".learned.final_compression", ".lqr_printed_environment.final_compression"),
         note="At equal knowledge it is a tie: {.learned.final_compression:.2f} mm learned, "
         "{.lqr_true.final_compression:.2f} mm for a regulator told the sponge of 400 N/m, "
         "{.lqr.final_compression:.2f} mm for one told 7 N/m. Below {.crossing_stiffness:.0f} N/m, which "
@@ -42,7 +40,7 @@ CLAIMS = (
         "C8.17p",
         "8.13",
         "It also has the lower peak compression, learning included.",
-        less(f"{SPONGE}.learned.peak_compression", f"{SPONGE}.lqr.peak_compression"),
+        less(".learned.peak_compression", ".lqr.peak_compression"),
         source="ours",
         note="The stiff initial gain and the exploration, both our choice, press {.learned.peak_compression:.0f} "
         "mm deep.",
@@ -51,21 +49,16 @@ CLAIMS = (
         "C8.17s",
         "8.C",
         "It compresses a softer sponge, 150 N/m, less than the regulator.",
-        less(f"{SPONGE}.soft_learned.final_compression", f"{SPONGE}.soft_lqr.final_compression"),
+        less(".soft_learned.final_compression", ".soft_lqr.final_compression"),
         source="ours",
     ),
     fig_8_13(
         "C8.18",
         "The numbers of nodes grow and remain stable.",
-        every(
-            less(f"{SPONGE}.learned.late_growth", 0.5),
-            *(greater(f"{SPONGE}.learned.nodes_{name}", 1.5) for name in "dcg"),
-        ),
-        control=less(f"{SPONGE}.at_200_hz.late_growth", 0.5),
+        every(less(".learned.late_growth", 0.5), *(greater(f".learned.nodes_{name}", 1.5) for name in "dcg")),
+        control=less(".at_200_hz.late_growth", 0.5),
         readings={
-            "joint angles and rates as inputs": every(
-                *(greater(f"{SPONGE}.learned.joint_nodes_{name}", 1.5) for name in "dc")
-            )
+            "joint angles and rates as inputs": every(*(greater(f".learned.joint_nodes_{name}", 1.5) for name in "dc"))
         },
         note="With task-space inputs there are {.learned.nodes_d:.0f}, {.learned.nodes_c:.0f} and "
         "{.learned.nodes_g:.0f} nodes at the end: that of C is the first and only one.",
@@ -73,7 +66,7 @@ CLAIMS = (
     fig_8_13(
         "C8.18b",
         "They remain stable at 14, 35 and 38.",
-        every(*(within(f"{SPONGE}.learned.nodes_{name}", n - 0.5, n + 0.5) for name, n in zip("dcg", (14, 35, 38)))),
+        every(*(within(f".learned.nodes_{name}", n - 0.5, n + 0.5) for name, n in zip("dcg", (14, 35, 38)))),
         no_control="D and G have one threshold and, as printed, one input: their counts are equal whatever is run",
         searched="task-space inputs, and joint angles and rates as inputs, with the printed thresholds",
         note="Task-space inputs make {.learned.nodes_d:.0f}, {.learned.nodes_c:.0f} and "
@@ -84,13 +77,13 @@ CLAIMS = (
         "C8.19",
         "8.14",
         "The gain converges on the sponge (to the optimal one).",
-        every(less(f"{SPONGE}.learned.gain_error", 0.01), less(f"{SPONGE}.learned.iterations", 10.0)),
+        every(less(".learned.gain_error", 0.01), less(".learned.iterations", 10.0)),
         control=optimal("lqr"),
         where="8.5",
     ),
 )
 REFERENCES = (
-    Reference(f"{SPONGE}.learned.nodes_d", 14, "8.5"),
-    Reference(f"{SPONGE}.learned.nodes_c", 35, "8.5"),
-    Reference(f"{SPONGE}.learned.nodes_g", 38, "8.5"),
+    Reference(".learned.nodes_d", 14, "8.5"),
+    Reference(".learned.nodes_c", 35, "8.5"),
+    Reference(".learned.nodes_g", 38, "8.5"),
 )

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from dexrepro.claims import STOPPED, Claim, Predicate, about, every, greater, less
 
-OBJECT = "unknown_object"
 EXPLORATION = 8 * 0.05  # N/s; the fastest that the exploration, sum of v_m/k sin(kt), moves the force
 SOFT = "the soft function"
 
 
 def calmer(case: str, rival: str) -> Predicate:
     """Less way back and forth, and a lower force rate, where the gain changes."""
-    return every(
-        *(less(f"{OBJECT}.{case}.{part}", f"{OBJECT}.{rival}.{part}") for part in ("oscillation", "force_rate"))
-    )
+    return every(*(less(f".{case}.{part}", f".{rival}.{part}") for part in ("oscillation", "force_rate")))
 
 
 fig_8_10 = about("8.10", "8.4.3")
@@ -23,8 +20,8 @@ CLAIMS = (
     fig_8_10(
         "C8.09",
         "The soft change of gain removes the discontinuity at the switch.",
-        less(f"{OBJECT}.soft.force_rate", EXPLORATION),
-        control=less(f"{OBJECT}.abrupt.force_rate", EXPLORATION),
+        less(".soft.force_rate", EXPLORATION),
+        control=less(".abrupt.force_rate", EXPLORATION),
         credits=SOFT,
         note="The measured force changes at {.soft.force_rate:.2f} N/s at most, slower than the "
         "exploration moves it; with the abrupt change at {.abrupt.force_rate:.2f} N/s.",
@@ -32,14 +29,10 @@ CLAIMS = (
     fig_8_10(
         "C8.10",
         "The soft change of gain does not oscillate (by 1 mm of way), the abrupt one does.",
-        less(f"{OBJECT}.static_soft.oscillation", 1.0),
-        control=less(f"{OBJECT}.static_abrupt.oscillation", 1.0),
+        less(".static_soft.oscillation", 1.0),
+        control=less(".static_abrupt.oscillation", 1.0),
         credits=SOFT,
-        readings={
-            "a reference that integrates the force error": less(
-                f"{OBJECT}.soft.oscillation", f"{OBJECT}.abrupt.oscillation"
-            )
-        },
+        readings={"a reference that integrates the force error": less(".soft.oscillation", ".abrupt.oscillation")},
         note="How x_0 follows from the law is not printed. Taken from the interaction law itself behind two lags the "
         "indentation swings by {.static_abrupt.oscillation:.0f} mm of way after the abrupt change and by "
         "{.static_soft.oscillation:.2g} mm after the soft one; with our integrating reference neither "
@@ -52,9 +45,7 @@ CLAIMS = (
         calmer("static_soft", "static_lqr_switched"),
         control=calmer("static_abrupt", "static_lqr_switched"),
         credits=SOFT,
-        readings={
-            "a reference that integrates the force error": calmer("soft", "lqr_switched"),
-        },
+        readings={"a reference that integrates the force error": calmer("soft", "lqr_switched")},
         searched="the regulator from K_0, as Fig. 8.11 shows it, with both references",
         note="Both laws start from the same K_0, as the book says and its Fig. 8.11 shows: force rate "
         "{.static_soft.force_rate:.2f} against {.static_lqr_switched.force_rate:.2f} N/s, oscillation "
@@ -65,9 +56,9 @@ CLAIMS = (
     fig_8_10(
         "C8.12",
         "The error stays inside its bounds during the interaction.",
-        every(*(less(f"{OBJECT}.{case}.bound_used", 1.0) for case in ("soft", "abrupt", "lqr"))),
-        control=less(f"{OBJECT}.no_barrier.bound_used", 1.0),
-        printed=less(f"{OBJECT}.plus.bound_used", 1.0),
+        every(*(less(f".{case}.bound_used", 1.0) for case in ("soft", "abrupt", "lqr"))),
+        control=less(".no_barrier.bound_used", 1.0),
+        printed=less(".plus.bound_used", 1.0),
         note="It uses {.soft.bound_used:.1%} of the bound, and without a barrier {.no_barrier.bound_used:.1%}: the "
         "barrier is not put to the test here. With tau_e = +K zeta, as Algorithm 8.1 prints, a bound is violated.",
         turns=STOPPED,
@@ -75,18 +66,14 @@ CLAIMS = (
     ours_8_10(
         "C8.12s",
         "The abrupt change keeps the bounds also with a fast reference taken from the interaction law (20 1/s).",
-        less(f"{OBJECT}.static_abrupt_fast.bound_used", 1.0),
+        less(".static_abrupt_fast.bound_used", 1.0),
     ),
     fig_8_11(
         "C8.13",
         "The learned gain is the optimal one, without a model of the object.",
-        every(
-            less(f"{OBJECT}.soft.gain_error_x", 0.01),
-            less(f"{OBJECT}.soft.gain_error_s", 0.01),
-            greater(f"{OBJECT}.soft.rank", 4.5),
-        ),
-        control=less(f"{OBJECT}.lqr.fraction_theory", f"{OBJECT}.lqr_true.fraction_theory", 1.01),
-        printed=less(f"{OBJECT}.soft.desired_path_error", 0.01),
+        every(less(".soft.gain_error_x", 0.01), less(".soft.gain_error_s", 0.01), greater(".soft.rank", 4.5)),
+        control=less(".lqr.fraction_theory", ".lqr_true.fraction_theory", 1.01),
+        printed=less(".soft.desired_path_error", 0.01),
         note="Optimal for the printed cost with M = -1, which is not the circle's. It is off by "
         "{.soft.gain_error_x:.1g}, for the half step by which velocities of the physics engine lag. The "
         "regressor s must obey (8.8); the desired path x_d/N does not (E8.09).",
@@ -95,13 +82,13 @@ CLAIMS = (
         "C8.13k",
         "8.B",
         "The learned gain is optimal to 1 % for every object from 5 to 1000 N/m.",
-        less(f"{OBJECT}.worst_gain_error", 0.01),
+        less(".worst_gain_error", 0.01),
         source="ours",
     ),
     fig_8_11(
         "C8.14",
         "The interaction is as favourable as the regulator's: the cost of the final law is not higher.",
-        less(f"{OBJECT}.soft.final_cost", f"{OBJECT}.lqr.final_cost"),
+        less(".soft.final_cost", ".lqr.final_cost"),
         by_construction="it follows from C8.13: no gain has a lower cost than the optimal one",
         note="At rest, computed from the gain and the object's stiffness; over the contact see C8.14w. The printed "
         "model of the regulator is wrong by a factor of ten in stiffness: told the true one, its cost is "
@@ -111,15 +98,15 @@ CLAIMS = (
     ours_8_10(
         "C8.14w",
         "The cost of the whole contact, learning included, is not higher than the regulator's.",
-        less(f"{OBJECT}.soft.contact_cost", f"{OBJECT}.lqr.contact_cost"),
+        less(".soft.contact_cost", ".lqr.contact_cost"),
         note="{.soft.contact_cost:.3g} against {.lqr.contact_cost:.3g}: the soft change "
         "keeps the bad initial gain longest.",
     ),
     fig_8_11(
         "C8.15",
         "No knowledge of the environment is needed: the gain is learned with the surface found by touch.",
-        every(less(f"{OBJECT}.soft.surface_error", 0.1), less(f"{OBJECT}.soft.gain_error_x", 0.01)),
-        control=less(f"{OBJECT}.absolute.gain_error_x", 0.01),
+        every(less(".soft.surface_error", 0.1), less(".soft.gain_error_x", 0.01)),
+        control=less(".absolute.gain_error_x", 0.01),
         note="The surface position is needed and comes from the first contact force [mm]; with "
         "{.noise.surface.1:g} m of error K_x is {.soft.surface_low_gain_x:.3f} or "
         "{.soft.surface_high_gain_x:.3f} N/m in place of {.soft.gain_x:.3f}.",
