@@ -23,7 +23,7 @@ from dexrepro import chapters, closure
 from dexrepro.case import targets
 from dexrepro.checks import check_lengths, check_types, check_words, differences, leaves, same
 from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block
-from dexrepro.control.contract import KINDS
+from dexrepro.control.contract import KINDS, takes
 from dexrepro.errors import InputError, folder_named, nearest
 from dexrepro.experiment import Experiment
 from dexrepro.physics.engine import REFERENCE, default
@@ -383,13 +383,8 @@ def check_own(values: Mapping[str, Any]) -> None:
             "reset": ["measured"],
             "__call__": ["measured", "desired"][: 1 + (kind != "holding")],
         }.items():
-            function = next((vars(base)[method] for base in law.__mro__ if method in vars(base)), None)
-            try:
-                inspect.signature(function).bind(law, *given)  # type: ignore[arg-type]
-            except TypeError:
-                raise InputError(
-                    f"{text} is no law of kind '{kind}': it must have {method}(self, {', '.join(given)})"
-                ) from None
+            if not takes(law, method, *given):
+                raise InputError(f"{text} is no law of kind '{kind}': it must have {method}(self, {', '.join(given)})")
 
 
 _imported: dict[Path, str] = {}

@@ -10,6 +10,7 @@ from __future__ import annotations
 import copy
 import importlib
 import inspect
+import os
 import re
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -28,7 +29,7 @@ from dexrepro.case import live, targets
 from dexrepro.case import run as run_case
 from dexrepro.checks import leaves, set_value, value_at
 from dexrepro.config import compose_chapter, experiment_cases
-from dexrepro.control.contract import KINDS
+from dexrepro.control.contract import KINDS, is_plain
 from dexrepro.errors import InputError, importable, nearest
 from dexrepro.experiment import Metrics
 from dexrepro.plan import content_of, lacking, writable
@@ -197,9 +198,11 @@ def _kind(target: str) -> str | None:
     """The kind of the law that a ``_target_`` names, None where it is no law."""
     module, _, name = target.rpartition(".")
     try:
-        return getattr(getattr(importlib.import_module(module), name), "kind", None)
+        law = getattr(importlib.import_module(module), name)
     except (ImportError, AttributeError, ValueError):
         return None
+    plain = inspect.isclass(law) and not module.startswith("dexrepro.") and is_plain(law)
+    return "holding" if plain else getattr(law, "kind", None)
 
 
 # ----------------------------------------------------------------------------------------------------------- the search
@@ -303,23 +306,39 @@ def _found(search: Search, rows: Sequence[Mapping[str, Any]]) -> Found:
 # -------------------------------------------------------------------------------------------------- laws of a folder
 
 
-def laws_in(folder: str | Path) -> dict[str, type]:
-    """The laws that the modules of a folder define, by what ``_target_`` calls them."""
-    folder = importable(folder, "laws")
-    found = {}
-    for file in sorted(folder.glob("*.py")):
+def laws_in(place: str | Path, tell: Callable[[str], None] = lambda text: None) -> dict[str, type]:
+    """The laws that a module or those of a folder define, by what ``_target_`` calls them.
+
+    They are the classes that declare a kind, and a plain holding law that is its module's only class: of several, any
+    may be a helper, and ``tell`` is told. Raises InputError where there is none, or a module cannot be imported.
+    """
+    alone = Path(place).expanduser().suffix == ".py" and Path(place).expanduser().is_file()
+    folder = importable(Path(place).expanduser().parent if alone else place, "laws")
+    found: dict[str, type] = {}
+    for file in [Path(place).expanduser()] if alone else sorted(folder.glob("*.py")):
         if file.stem.startswith(("test_", "_", "conftest")):
             continue
         try:
             module = importlib.import_module(file.stem)
         except Exception as error:
             raise InputError(f"{file} cannot be imported: {type(error).__name__}: {error}") from error
-        for name, law in inspect.getmembers(module, inspect.isclass):
-            if law.__module__ == file.stem and getattr(law, "kind", None) in KINDS:
-                found[f"{file.stem}.{name}"] = law
+        if not os.path.samefile(getattr(module, "__file__", None) or os.devnull, file):
+            raise InputError(f"'{file.stem}' is a module of Python or of a package already; rename {file}")
+        defined = {name: law for name, law in inspect.getmembers(module, inspect.isclass)
+                   if law.__module__ == file.stem}  # fmt: skip
+        laws = {name: law for name, law in defined.items() if getattr(law, "kind", None) in KINDS}
+        plain = {name: law for name, law in defined.items() if is_plain(law)}
+        if len(defined) == 1 or not plain:
+            laws |= plain
+        else:
+            tell(
+                f"{file}: {', '.join(plain)} could be plain holding laws or helpers; declare kind = 'holding' in a law"
+            )
+        found |= {f"{file.stem}.{name}": law for name, law in laws.items()}
     if not found:
         raise InputError(
-            f"laws = {folder} is not allowed: no class in it declares kind = 'joint', 'end_point' or 'holding'"
+            f"laws = {place} is not allowed: no class in it declares kind = 'joint', 'end_point' or 'holding', and "
+            "none that is alone in its file is a plain holding law"
         )
     return found
 
@@ -333,7 +352,7 @@ def joined(search: Search, target: str, law: type) -> Search | None:
     kinds = {_kind(text) for text in targets(search.values)}
     if "law" not in search.values:
         raise InputError(f"{search.experiment} compares no laws: its cases have no 'law'")
-    if law.kind not in kinds:  # type: ignore[attr-defined]
+    if getattr(law, "kind", "holding") not in kinds:
         return None
     spans: dict[str, Range] = dict(getattr(law, "ranges", {}))
     needs = set(getattr(law, "needs", ()))

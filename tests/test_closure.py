@@ -232,11 +232,11 @@ print(len(list(pathlib.Path("results/.cache/decay").glob("mine-*"))))
 """
 
 
-def session(toy: Path, script: str) -> list[str]:
-    (toy / "session.py").write_text(SESSION + script)
+def session(folder: Path, script: str, beginning: str = SESSION) -> list[str]:
+    (folder / "session.py").write_text(beginning + script)
     done = subprocess.run(
-        [sys.executable, "session.py"], cwd=toy, env={**os.environ, "PYTHONPATH": f"{ROOT}"}, capture_output=True,
-        text=True, timeout=100, check=False,
+        [sys.executable, "session.py"], cwd=folder, env={**os.environ, "PYTHONPATH": f"{ROOT}"}, capture_output=True,
+        text=True, timeout=300, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     return done.stdout.split()
@@ -245,6 +245,31 @@ def session(toy: Path, script: str) -> list[str]:
 def test_a_law_that_is_edited_in_a_session_never_gets_another_versions_result(toy: Path) -> None:
     assert session(toy, EDITED) == ["1.0", "2.0", "3.0"]
     assert session(toy, 'print(final("edlaw.L"))') == ["3.0"]
+
+
+PLAIN = """
+import pathlib
+import dexrepro
+LAW = '''class L:
+    def __init__(self, gain, dt): self.gain, self.dt = {} * gain, dt
+    def reset(self, position): self.reference = position
+    def __call__(self, position, force):
+        self.reference += self.gain * (force - 1.0) * self.dt
+        return self.reference
+'''
+def rmse():
+    given = ["~holding_comparison.cases", "holding_comparison.duration=2",
+             "+holding_comparison.cases={mine: {law: {_target_: plain_law.L, gain: 0.02, dt: 0.001}}}"]
+    result = dexrepro.run(2, given, only="holding_comparison", workers=1)["holding_comparison"]
+    print(round(result.metrics["holding_comparison.mine.rmse_0"], 3))
+"""
+
+
+@pytest.mark.slow
+def test_a_plain_law_that_is_edited_between_two_runs_of_a_real_comparison_gives_its_own_numbers(tmp_path: Path) -> None:
+    both = "for factor in (1, 5):\n    pathlib.Path('plain_law.py').write_text(LAW.format(factor))\n    rmse()\n"
+    assert session(tmp_path, both, PLAIN) == ["1.707", "0.57"]
+    assert session(tmp_path, "rmse()\n", PLAIN) == ["0.57"], "a fresh process, the edited file"
 
 
 def test_a_class_of_a_script_or_notebook_is_never_taken_from_the_cache(toy: Path) -> None:

@@ -17,6 +17,7 @@ from conftest import ROOT, Shell
 from test_cli import SHORT
 
 from dexrepro import chapters, measured, scoreboard
+from dexrepro.control.contract import Measured, check
 
 README = (ROOT / "README.md").read_text()
 PAGES = [README, *(path.read_text() for path in sorted((ROOT / "docs").glob("*.md")))]
@@ -53,6 +54,14 @@ def test_the_own_control_law_joins_the_comparison(shell: Shell, tmp_path: Path) 
     assert done.returncode == 0, done.stderr
     metrics = next(tmp_path.glob("results/runs/holding_comparison-*/metrics.json")).read_text()
     assert "holding_comparison.mine.rmse" in metrics
+
+
+def test_the_plain_law_is_one() -> None:
+    names: dict[str, type] = {}
+    exec(block("python", "class PlainIntegralForce"), names)
+    law = check(names["PlainIntegralForce"](0.5, 1.0, 0.1), "holding")
+    law.reset(Measured(0.0, 0.2, 0.0, 0.0))
+    assert law(Measured(0.0, 0.2, 0.0, 3.0)) == pytest.approx(0.3)
 
 
 def test_a_folder_of_the_users_own_joins_the_comparison(shell: Shell, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -131,6 +132,44 @@ def test_laws_of_a_folder_stand_beside_the_books_where_their_kind_fits(tmp_path,
     assert law["_target_"] == "laws_of_a_folder.Mine"
     assert (law["desired_force"], law["dt"]) == (1.0, mine.values["step"])
     assert "limit" not in law
+
+
+PLAIN = """
+class {name}:
+    ranges = {{"gain": (0.1, 1.0)}}
+    def __init__(self, gain, dt): ...
+    def reset(self, position): ...
+    def __call__(self, position, force): return 0.0
+"""
+
+
+def test_a_plain_law_alone_in_its_file_is_found_and_of_several_one_must_say_which(tmp_path, monkeypatch):
+    alone, several, helpers = tmp_path / "plain_alone.py", tmp_path / "plain_several.py", tmp_path / "_plain_helper.py"
+    alone.write_text("from _plain_helper import Filter\n" + PLAIN.format(name="Mine"))
+    helpers.write_text(PLAIN.format(name="Filter"))
+    several.write_text(PLAIN.format(name="Low") + PLAIN.format(name="High"))
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    told = []
+    assert list(tune.laws_in(tmp_path, told.append)) == ["plain_alone.Mine"]
+    assert told == [f"{several}: High, Low could be plain holding laws or helpers; declare kind = 'holding' in a law"]
+    laws = tune.laws_in(alone)
+    assert list(laws) == ["plain_alone.Mine"], "a file is named as well as a folder"
+    with pytest.raises(InputError, match=r"laws = .*several.py is not allowed: no class in it declares kind = 'joint'"):
+        tune.laws_in(several)
+    search = tune.joined(
+        tune.search_of("holding_comparison.s4", "rmse", 1), "plain_alone.Mine", laws["plain_alone.Mine"]
+    )
+    assert search.ranges == {"law.gain": (0.1, 1.0)}
+    assert search.values["law"]["dt"] == search.values["step"]
+    given = "+holding_comparison.cases.mine={law: {_target_: plain_alone.Mine, gain: 0.2, dt: 0.001}}"
+    assert tune.search_of("holding_comparison.mine", "rmse", 1, (), [given]).ranges["law.gain"] == (0.05, 0.8)
+
+
+def test_a_law_in_a_file_of_another_modules_name_is_one_sentence(tmp_path, monkeypatch):
+    (tmp_path / "signal.py").write_text(PLAIN.format(name="Mine"))
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    with pytest.raises(InputError, match=r"'signal' is a module of Python or of a package already; rename .*signal.py"):
+        tune.laws_in(tmp_path)
 
 
 def test_a_law_of_which_nothing_says_how_it_is_built_is_one_sentence(tmp_path, monkeypatch):

@@ -61,7 +61,7 @@ def compare_command(options: argparse.Namespace) -> int:
     known, rest = _search_words(options.selection, "compare", "laws")
     if rest:
         raise InputError(f"'{rest[0]}' has no meaning here; see: dexrepro compare --help")
-    laws = tune.laws_in(known["laws"])
+    laws = tune.laws_in(known["laws"], say)
     results, names = known["results"], known["case"].split(",")
     rows = tune.leaderboard(
         names, laws, known["metric"].split(","), known["sign"],

@@ -9,15 +9,20 @@ A law declares its ``kind``, which says in which coordinates it thinks:
 - ``holding``: they are the displacement along the line of contact [m], its rate, and the force along it [N], positive
   in compression; it returns where the arm should be along that line [m], and is told nothing of a partner.
 
+Where a holding law is wanted, a class without ``kind`` may have the plain shape ``reset(position)`` and
+``__call__(position, force)``, see :class:`Plain`. The other kinds have none: a joint or end-point law is told more than
+two numbers, in an order that nothing but a name would tell.
+
 Adapters that drive an arm of a World with a law stand in :mod:`dexrepro.physics.drive`.
 """
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
-from typing import ClassVar, Generic, Literal, NamedTuple, Protocol, TypeVar
+from typing import Any, ClassVar, Generic, Literal, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -97,6 +102,29 @@ class HoldingLaw(Protocol):
         """Where the arm should be along the line of contact [m], once a control period."""
 
 
+class Plain:
+    """A holding law of the plain shape, ``reset(position)`` and ``__call__(position, force)``, as one of the contract.
+
+    law: an object whose class :func:`is_plain`.
+    """
+
+    def __init__(self, law: Any) -> None:
+        self.law = law
+
+    def reset(self, measured: Measured[Real]) -> None:
+        """Start anew at a displacement [m]."""
+        self.law.reset(measured.position)
+
+    def __call__(self, measured: Measured[Real]) -> Real:
+        """Where the arm should be [m]."""
+        reference: Real = self.law(measured.position, measured.force)
+        return reference
+
+    def diagnostics(self) -> Mapping[str, Real]:
+        """Those of the law."""
+        return report(self.law)
+
+
 class NominalModel(Protocol):
     """What a law may know of its arm: dynamics and end point at joint angles and rates (n,) [rad, rad/s]."""
 
@@ -168,15 +196,39 @@ def printed_forms(printed: Collection[str], known: Collection[str]) -> frozenset
 
 
 def check(law: Law_, kind: Kind) -> Law_:
-    """The law, if its declared kind is the one wanted. Raises ValueError with one sentence otherwise."""
+    """The law, if its declared kind is the one wanted; a plain holding law, if such is wanted, in a :class:`Plain`.
+
+    Raises ValueError with one sentence otherwise.
+    """
     declared = getattr(law, "kind", None)
     if declared == kind and callable(law):
         return law
     if declared in KINDS:
         raise ValueError(f"law {_name(type(law))} is of kind '{declared}'; here a law of kind '{kind}' is wanted")
+    if kind == "holding" and declared is None and is_plain(type(law)):
+        return cast(Law_, Plain(law))
+    plain = "; or, without a kind, have reset(self, position) and __call__(self, position, force)"
     raise ValueError(
         f"{_name(type(law))} is no law: its class must declare kind = '{kind}' (kinds are {', '.join(KINDS)})"
+        f"{plain if kind == 'holding' else ''}"
     )
+
+
+def takes(law: type, method: str, *given: str) -> bool:
+    """Whether objects of a class can be called so: a method by its name with just these arguments, in this order."""
+    function: Any = next((vars(base)[method] for base in law.__mro__ if method in vars(base)), None)
+    try:
+        inspect.signature(function).bind(law, *given)
+    except (TypeError, ValueError):
+        return False
+    return True
+
+
+def is_plain(law: type) -> bool:
+    """Whether a class that declares no kind is a plain holding law: ``reset`` takes a position, a call position and
+    force, and not one argument alone, as in the contract."""
+    calls = takes(law, "__call__", "position", "force") and not takes(law, "__call__", "measured")
+    return not hasattr(law, "kind") and calls and takes(law, "reset", "position")
 
 
 def number(value: object) -> float:

@@ -17,7 +17,7 @@ from typing import ClassVar
 import numpy as np
 
 from dexrepro.arrays import Real
-from dexrepro.control.contract import HoldingLaw, Kind, Measured, report
+from dexrepro.control.contract import HoldingLaw, Kind, Measured, check, report
 from dexrepro.control.passive_impedance import PassiveImpedance
 
 
@@ -93,7 +93,7 @@ class Compliant:
     kind: ClassVar[Kind] = "holding"
 
     def __init__(self, *, law: HoldingLaw, impedance: PassiveImpedance) -> None:
-        self.law, self.impedance = law, impedance
+        self.law, self.impedance = check(law, "holding"), impedance
 
     def reset(self, measured: Measured[Real]) -> None:
         """Start both, the impedance from no lead."""

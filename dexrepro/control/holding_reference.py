@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import ClassVar, TypedDict, Unpack
 
 from dexrepro.arrays import Real
-from dexrepro.control.contract import HoldingLaw, Kind, Measured, report
+from dexrepro.control.contract import HoldingLaw, Kind, Measured, check, report
 from dexrepro.control.movement_estimation import MovementEstimation
 
 
@@ -99,7 +99,7 @@ class FadeIn:
     def __init__(
         self, *, law: HoldingLaw, desired_force: Real, smoothing_rate: float, smoothing_power: float, dt: float
     ) -> None:
-        self.law, self.desired_force, self.dt = law, desired_force, dt
+        self.law, self.desired_force, self.dt = check(law, "holding"), desired_force, dt
         self.smoothing_rate, self.smoothing_power = smoothing_rate, smoothing_power
 
     def reset(self, measured: Measured[Real]) -> None:
@@ -153,7 +153,7 @@ class ToldMovement:
     velocity = acceleration = 0.0
 
     def __init__(self, *, law: HoldingLaw, position: Real, stiffness: float) -> None:
-        self.law, self._told, self.stiffness = law, position, stiffness
+        self.law, self._told, self.stiffness = check(law, "holding"), position, stiffness
         self.reset()
 
     def reset(self) -> None:

@@ -6,13 +6,13 @@ import time as wall
 from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array
-from dexrepro.control.contract import Undefined, Unusable
+from dexrepro.control.contract import Plain, Undefined, Unusable
 from dexrepro.experiment import Recording
 from dexrepro.physics.elements import Element, Ends
 from dexrepro.physics.engine import Scene
@@ -266,11 +266,12 @@ class _Scene:
 
 
 def _name_of(controller: Controller) -> str:
-    """The class of the law that a controller carries out."""
-    law: object = controller
+    """The class of the law that a controller carries out, and what it is told where it does not say so."""
+    law, told = cast(object, controller), ""
     while not hasattr(law, "kind") and hasattr(law, "law"):
+        told = " (of no kind, so told position and force)" if isinstance(law, Plain) else ""
         law = law.law
-    return str(getattr(law, "__qualname__", type(law).__name__))
+    return f"{getattr(law, '__qualname__', type(law).__name__)}{told}"
 
 
 def _diverged(arm: SimulatedArm, now: float) -> str:

@@ -64,6 +64,26 @@ class Holding(Joint):
         return 0.0
 
 
+class PlainHolding:
+    """The same in the plain shape, which declares no kind."""
+
+    def reset(self, position: float) -> None:
+        Told.resets += 1
+
+    def __call__(self, position: float, force: float) -> float:
+        Told.measured, Told.calls = Measured(0.0, position, 0.0, force), Told.calls + 1
+        return 0.0
+
+
+class Forgetful:
+    """A joint law without its kind, which can be called with two arguments, too."""
+
+    def reset(self, measured: Measured[Any]) -> None: ...
+
+    def __call__(self, measured: Measured[Any], desired: Motion[Any]) -> Command:
+        return Command(desired.position - measured.position)
+
+
 LAWS = {law.kind: law for law in (Joint, EndPoint, Holding)}
 KINDS = {"1": "holding", "2": "holding", "3": "joint", "4": "end_point", "5": "joint", "6": "joint", "7": "joint",
          "8": "end_point"}  # fmt: skip
@@ -108,10 +128,15 @@ def brief(monkeypatch: pytest.MonkeyPatch) -> None:
     Told.calls = Told.resets = 0
 
 
-@pytest.mark.parametrize(("number", "name"), COMPARISONS)
+@pytest.mark.parametrize(
+    ("number", "name", "law"),
+    [
+        *((number, name, LAWS[KINDS[number]]) for number, name in COMPARISONS),
+        *((number, name, PlainHolding) for number, name in COMPARISONS if KINDS[number] == "holding"),
+    ],
+)
 @pytest.mark.usefixtures("brief")
-def test_a_law_of_its_kind_joins_the_comparison(number: str, name: str) -> None:
-    law = LAWS[KINDS[number]]
+def test_a_law_of_its_kind_joins_the_comparison(number: str, name: str, law: type) -> None:
     case = ", ".join((f"law: {{_target_: test_own_law.{law.__name__}}}", *BESIDE.get(name, ())))
     values = experiment_cases(compose_chapter(number, (f"+{name}.cases.mine={{{case}}}",)), name)["mine"]
     config = live({**values, "perturbation": 0.0, "seed": 1, "case": "mine"})
@@ -197,6 +222,25 @@ def test_a_law_that_is_not_there_or_cannot_be_called_gets_one_sentence(
         place.write_text(OWN.replace(*change, 1))
     with pytest.raises(InputError, match=sentence) if sentence else nullcontext():
         check_own({"law": {"_target_": target}})
+
+
+def test_a_law_that_forgot_its_kind_hears_that_it_was_taken_for_a_plain_one() -> None:
+    given = ("+holding_comparison.cases.mine={law: {_target_: test_own_law.Forgetful}}",)
+    values = experiment_cases(compose_chapter("2", given), "holding_comparison")["mine"]
+    config = live({**values, "perturbation": 0.0, "seed": 1, "case": "mine"})
+    with pytest.raises(
+        LawFailed, match=r"the law Forgetful \(of no kind, so told position and force\) of arm 'follower'"
+    ):
+        chapters.load("2").experiment("holding_comparison").simulation.simulate(config, lambda _: generator(1, "", ""))
+
+
+def test_the_own_scene_takes_laws_of_every_kind_so_that_each_must_declare_its_own() -> None:
+    arm = "scene.arm={_target_: dexrepro.robots.planar.planar, lengths: [0.4, 0.3], masses: [1.0, 0.8]}"
+    leader = "scene.leader={line: {start: [0.5, 0.1, 0], end: [0.55, 0.15, 0], period: 4}}"
+    given = (arm, leader, "scene.law={_target_: test_own_law.PlainHolding}", "scene.offset=[-0.1, 0, 0]")
+    (values,) = experiment_cases(compose_chapter("own", given), "scene").values()
+    with pytest.raises(InputError, match="scene law PlainHolding must declare its kind, one of joint, end_point, hold"):
+        chapters.load("own").experiment("scene").simulation.simulate(live({**values, "perturbation": 0.0}), None)
 
 
 def test_what_fails_is_the_law_and_not_its_adapter() -> None:

@@ -109,6 +109,24 @@ class Wish:
         return self.place
 
 
+class Follows:
+    """A plain holding law: it moves from where it was reset by a thousandth of the force."""
+
+    def reset(self, position):
+        self.place = position
+
+    def __call__(self, position, force):
+        self.place += 1e-3 * force
+        return self.place
+
+
+def test_a_plain_holding_law_is_driven_as_any_other():
+    drive = HoldingDrive(Follows(), limit=2e-3)
+    drive.reset(1.0, 0.01, 3.0)
+    assert [drive(1.0 + 0.1 * k, 0.0, 1.5) for k in (1, 2)] == pytest.approx([0.0115, 0.013])
+    assert drive(1.3, 0.0, 90.0) == pytest.approx(0.015), "its reference moves at most by the limit"
+
+
 def test_a_holding_law_is_told_the_rate_and_its_reference_moves_at_most_by_the_limit():
     free, held = HoldingDrive(Wish(0.05)), HoldingDrive(Wish(0.05), limit=0.02)
     for drive in (free, held):
