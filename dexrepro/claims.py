@@ -271,11 +271,7 @@ class Claim:
         )
 
     def _verdict(
-        self,
-        margin: float | None,
-        control: float | None,
-        printed: float | None,
-        readings: Mapping[str, float | None],
+        self, margin: float | None, control: float | None, printed: float | None, readings: Mapping[str, float | None]
     ) -> str:
         if self.predicate is None:
             return NOT_TESTABLE

@@ -158,12 +158,7 @@ def _require_display() -> None:
 
 
 def _plan(
-    chapter: str,
-    name: str,
-    config: Mapping[str, Any],
-    shipped: Mapping[str, Any],
-    results: Path,
-    perturbation: float,
+    chapter: str, name: str, config: Mapping[str, Any], shipped: Mapping[str, Any], results: Path, perturbation: float
 ) -> Plan:
     seed: int = config["seed"]
     cases, block = experiment_cases(config, name), resolved_block(config, name)

@@ -149,12 +149,7 @@ def within(share: float, low: float, high: float, whole: bool = False) -> float:
 
 
 def evaluate(
-    chapter: str,
-    experiment: str,
-    index: int,
-    known: Mapping[str, Any],
-    engine: str = REFERENCE,
-    only: Cases = (),
+    chapter: str, experiment: str, index: int, known: Mapping[str, Any], engine: str = REFERENCE, only: Cases = ()
 ) -> dict[str, Any]:
     """One sample: what was drawn and, of every case that a claim is about, the key of its simulation and its metrics.
 
@@ -365,13 +360,7 @@ def _refuse_fewer(chapter: str, experiment: str, samples: int, results: Path, ta
 
 
 def contribute(
-    chapter: str,
-    experiment: str,
-    index: int,
-    results: Path,
-    deadline: float,
-    engine: str = REFERENCE,
-    only: Cases = (),
+    chapter: str, experiment: str, index: int, results: Path, deadline: float, engine: str = REFERENCE, only: Cases = ()
 ) -> None:
     """Evaluate one sample and add its line, unless another process does or has done so, or it is too late."""
     with claimed(_folder(results), f"{experiment}.{index}", wait=False) as mine:

@@ -53,11 +53,7 @@ class _Report:
     def __init__(self, results: Path, folder: Path) -> None:
         self.results, self.folder = results, folder
         self.templates = templates()
-        self.templates.globals |= {
-            "book": chapters.book(),
-            "KINDS": KINDS,
-            "engines": crosscheck.verdicts(results),
-        }
+        self.templates.globals |= {"book": chapters.book(), "KINDS": KINDS, "engines": crosscheck.verdicts(results)}
         self.search: list[tuple[str, str, str, str]] = []
         self.code = Sources(folder)
 

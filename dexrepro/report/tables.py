@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
 
 import pandas as pd
 
@@ -10,13 +11,16 @@ from dexrepro.experiment import AllMetrics
 
 
 def by_case(
-    metrics: AllMetrics, columns: Mapping[str, str], cases: Iterable[str] | None = None, first: str = "case"
-) -> pd.DataFrame:
+    metrics: AllMetrics, columns: Mapping[str, str], cases: Iterable[str] | None = None, first: str = "case",
+    told: Callable[[str], Mapping[str, Any]] = lambda case: {},
+) -> pd.DataFrame:  # fmt: skip
     """One row a case: its name under ``first``, then its metrics under the headings that ``columns`` gives them.
 
     cases: which, in this order, by default all; those without metrics are left out. What a case lacks stays empty.
+    told: what stands between, by heading, such as settings of the case.
     """
     shown = metrics if cases is None else [case for case in cases if case in metrics]
     return pd.DataFrame(
-        [{first: case, **{text: metrics[case].get(name) for name, text in columns.items()}} for case in shown]
+        {first: case, **told(case), **{text: metrics[case].get(name) for name, text in columns.items()}}
+        for case in shown
     )

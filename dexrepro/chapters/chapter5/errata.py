@@ -242,10 +242,5 @@ ERRATA = (
         "F_i is called positive and limited; it has the sign of e_i and grows without limit at the bound.",
         "F_i = e_i / (b^2 - e_i^2).",
     ),
-    slip(
-        "E5.31",
-        "text before (5.28)",
-        "theta_i^C multiplies Upsilon^c.",
-        "theta_i^U, as in (5.27).",
-    ),
+    slip("E5.31", "text before (5.28)", "theta_i^C multiplies Upsilon^c.", "theta_i^U, as in (5.27)."),
 )

@@ -102,12 +102,7 @@ ERRATA = (
         'on Assumption 6.1 (called "Assumption 5.1").',
         "dV^1/dt <= 0, with LaSalle's argument for v = 0.",
     ),
-    slip(
-        "E6.10",
-        "(6.4), (6.5)",
-        "The difference is not squared; v in (6.5) lacks the index j.",
-        "Sum of squares.",
-    ),
+    slip("E6.10", "(6.4), (6.5)", "The difference is not squared; v in (6.5) lacks the index j.", "Sum of squares."),
     slip(
         "E6.11",
         "6.3-6.4, labels",

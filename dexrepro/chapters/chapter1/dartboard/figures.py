@@ -20,7 +20,7 @@ FIGURES = {
         "shows photographs.",
         "Rings with the hits of two mappings on six boards, hand speed, scale and distance over time, and posture "
         "loads.",
-    ),
+    )
 }
 UNITS = {"scale": "1", "tool": "m", "hand": "m"}
 TABLES = {"T1.D": "Scores with the general and the proposed mapping, for several constant scales and ring widths"}

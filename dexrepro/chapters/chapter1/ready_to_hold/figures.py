@@ -138,9 +138,8 @@ def _draw_task(recording: Recording, config: Config, off: float) -> Drawing:
     for k, word in enumerate(words):
         axes[0].annotate(word, (0.5 * (edges[k] + edges[k + 1]), 1.0), xycoords=("data", "axes fraction"),
                          fontsize=6.5, ha="center", va="bottom", color="#555555")  # fmt: skip
-    return style.title(
-        figure, f"AFR keeps its distance, comes when DFR comes and points to it within {style.at_most(off, 1)} deg"
-    )
+    finding = f"AFR keeps its distance, comes when DFR comes and points to it within {style.at_most(off, 1)} deg"
+    return style.title(figure, finding)
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

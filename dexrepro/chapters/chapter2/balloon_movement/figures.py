@@ -11,6 +11,7 @@ from dexrepro.chapters.chapter2 import balloon_pair
 from dexrepro.chapters.chapter2.measures import gains, shown
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recording, Recordings
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "2.9c": Figure(
@@ -36,22 +37,15 @@ FILM = Film(
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    rows = [
-        {
-            "case": case,
-            "law": (case if config.cases[case].law else config.cases[case].controller).replace("_", " "),
-            "gains": gains(config.cases[case], config),
-            "k_o [N/m]": config.cases[case].stiffness,
-            "regulation (2.8), (2.9)": "yes" if config.cases[case].regulation else "no",
-            "RMSE on the line [N]": found["rmse_line"],
-            "RMSE on the circle [N]": found["rmse_circle"],
-            "mean error on the circle [N]": found["mean_error_circle"],
-            "std of the distance on the circle [m]": found["distance_spread"],
-        }
-        for case, found in metrics.items()
-        if case in config.cases
-    ]
-    return {"T2.2": pd.DataFrame(rows)}
+    def told(case: str) -> dict[str, Any]:
+        its = config.cases[case]
+        return {"law": (case if its.law else its.controller).replace("_", " "), "gains": gains(its, config),
+                "k_o [N/m]": its.stiffness, "regulation (2.8), (2.9)": "yes" if its.regulation else "no"}  # fmt: skip
+
+    columns = {"rmse_line": "RMSE on the line [N]", "rmse_circle": "RMSE on the circle [N]",
+               "mean_error_circle": "mean error on the circle [N]",
+               "distance_spread": "std of the distance on the circle [m]"}  # fmt: skip
+    return {"T2.2": by_case(metrics, columns, config.cases, told=told)}
 
 
 SHOWN = {"force": ("F", "plain"), "passive": ("PIm", "rival"), "proposed": ("proposed", "book")}
@@ -111,7 +105,5 @@ def _draw_result(recordings: Recordings, metrics: AllMetrics, config: Config) ->
     bars.set(ylabel="Force RMSE [N]", yscale="log", ylim=(0.01, 20))
     style.panel(bars, "d", "line (pale) and circle")
     best = style.at_most(shown(metrics["proposed"]["rmse_circle"]), 2)
-    return style.title(
-        figure,
-        f"The proposed law holds {config.desired_force:g} N within {best} N rms on the circle (simulated Baxter)",
-    )
+    finding = f"The proposed law holds {config.desired_force:g} N within {best} N rms on the circle (simulated Baxter)"
+    return style.title(figure, finding)

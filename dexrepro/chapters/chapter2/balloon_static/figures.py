@@ -57,9 +57,8 @@ def _draw_setup(recordings: Recordings, config: Config) -> Drawing:
     front.set(xlabel="x [mm]", ylabel="z [mm]", aspect="equal", xlim=(600, 820), ylim=(210, 400))
     front.legend(loc="upper left")
     style.panel(front, "b", "grippers at the start, seen along y")
-    return style.title(
-        figure, "Two arms, one balloon, and a follower that starts off the holding line (synthetic operator)"
-    )
+    finding = "Two arms, one balloon, and a follower that starts off the holding line (synthetic operator)"
+    return style.title(figure, finding)
 
 
 def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -85,6 +84,5 @@ def _draw_paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
     grid[1, 1].legend(ncols=3, loc="center right")
     ends = np.ptp([run["follower.tip"][-1] for run in recordings.values()], axis=0)
     spread = style.at_most(1e3 * float(np.linalg.norm(ends)), 1)
-    return style.title(
-        figure, f"From both starts the follower ends at one place, within {spread} mm (simulated Baxter)"
-    )
+    finding = f"From both starts the follower ends at one place, within {spread} mm (simulated Baxter)"
+    return style.title(figure, finding)

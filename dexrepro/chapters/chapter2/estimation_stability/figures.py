@@ -14,7 +14,7 @@ FIGURES = {
         "(b) Fall of the Lyapunov function (2.19) for constant parameters, and the sum of its exact discrete "
         "decrements. Not in the book.",
         "Prediction error over time for several rates, and a Lyapunov function beside the sum of its decrements.",
-    ),
+    )
 }
 UNITS = {"lyapunov": "N² s", "change": "N² s", "exact_change": "N² s", "predicted_fall": "N² s", "error": "N"}
 

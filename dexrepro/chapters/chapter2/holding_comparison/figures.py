@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
@@ -9,6 +11,7 @@ from dexrepro.chapters.chapter2.holding_comparison.experiment import SETTLED
 from dexrepro.chapters.chapter2.measures import gains, shown
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Recordings
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "2.8": Figure(
@@ -41,27 +44,18 @@ LINES = {"force": "plain", "passive_impedance": "rival", "no_impedance": "extra1
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    rows = []
-    for case in recordings:
-        parameters, found = config.cases[case], metrics[case]
-        rows.append(
-            {
-                "no": case,
-                "controller": _name(case, parameters),
-                "trajectory": parameters.leader.trajectory,
-                "regulation (2.8)": "yes" if parameters.follower.regulation else "no",
-                "f_d [N]": parameters.desired_force,
-                "gains": gains(parameters, config),
-                "realisation": parameters.realisation,
-                **{f"RMSE [{start}, {config.duration:g}] s [N]": found[f"rmse_{start}"] for start in (0, 5, 10)},
-                f"RMSE [{SETTLED:g}, {config.duration:g}] s [N]": found["rmse"],
-                f"mean error [{SETTLED:g}, {config.duration:g}] s [N]": found["mean_error"],
-                f"largest error [{SETTLED:g}, {config.duration:g}] s [N]": found["largest_error"],
-                "share of time without contact": found["lost"],
-                "share of time at the workspace bounds": found["bounded"],
-            }
-        )
-    return {"T2.1": pd.DataFrame(rows)}
+    def told(case: str) -> dict[str, Any]:
+        its = config.cases[case]
+        return {"controller": _name(case, its), "trajectory": its.leader.trajectory,
+                "regulation (2.8)": "yes" if its.follower.regulation else "no", "f_d [N]": its.desired_force,
+                "gains": gains(its, config), "realisation": its.realisation}  # fmt: skip
+
+    late = f"[{SETTLED:g}, {config.duration:g}] s [N]"
+    columns = {f"rmse_{start}": f"RMSE [{start}, {config.duration:g}] s [N]" for start in (0, 5, 10)}
+    columns |= {"rmse": f"RMSE {late}", "mean_error": f"mean error {late}", "largest_error": f"largest error {late}",
+                "lost": "share of time without contact",
+                "bounded": "share of time at the workspace bounds"}  # fmt: skip
+    return {"T2.1": by_case(metrics, columns, recordings, "no", told)}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:

@@ -11,7 +11,7 @@ FIGURES = {
         "apart across the line, (b) the partner swings across it. The partner's movement and the object are known to "
         "the follower here, as in the book, which shows the upper row.",
         "Holding force and lateral offset over time with and without the regulation, in two cases.",
-    ),
+    )
 }
 UNITS = {"reference": "m", "estimate": "m, N/m, m/s"}
 

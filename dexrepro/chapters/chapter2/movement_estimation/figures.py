@@ -51,9 +51,8 @@ def _draw_forces(cases: list[str], recordings: Recordings, metrics: Any, config:
     axes.set(xlabel="Time [s]", ylabel="Contact force $f_x$ [N]")
     axes.legend(loc="center right")
     slowest = max(metrics[case]["settling_time"] for case in cases)
-    return style.title(
-        figure, f"The force is within 5 % of the desired one after {slowest:.2f} s, whatever the stiffness"
-    )
+    finding = f"The force is within 5 % of the desired one after {slowest:.2f} s, whatever the stiffness"
+    return style.title(figure, finding)
 
 
 def _draw_estimates(cases: list[str], recordings: Recordings, metrics: Any, config: Config) -> Drawing:

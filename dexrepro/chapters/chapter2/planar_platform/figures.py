@@ -71,6 +71,5 @@ def _draw_platform(arms: pd.DataFrame, paths: pd.DataFrame) -> Drawing:
     tips = arms.groupby(["pose", "arm"])[["x", "y"]].last().unstack("arm")
     apart = (tips["x", "follower"] - tips["x", "leader"])["a"]
     off = 1e3 * (tips["y", "follower"] - tips["y", "leader"]).abs()["b"]
-    return style.title(
-        figure, f"Two planar arms {apart:g} m apart (pose b: {off:.0f} mm off the line) and the leader's two paths"
-    )
+    finding = f"Two planar arms {apart:g} m apart (pose b: {off:.0f} mm off the line) and the leader's two paths"
+    return style.title(figure, finding)

@@ -91,9 +91,8 @@ def _draw_tracking(recordings: Recordings, metrics: Any, config: Config) -> Draw
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=4)
     found = metrics["track"]
     far, tip = (style.at_most(1e3 * found[f"moving_{key}_max"], 1) for key in ("distance", "error"))
-    return style.title(
-        figure, f"The arm follows the opening within {far} mm while its end point errs by at most {tip} mm"
-    )
+    finding = f"The arm follows the opening within {far} mm while its end point errs by at most {tip} mm"
+    return style.title(figure, finding)
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:

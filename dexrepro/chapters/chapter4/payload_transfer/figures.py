@@ -88,10 +88,8 @@ def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) ->
     style.legend_below(figure, {label: style.LINES[line] for _, label, line in shown})
     _draw_bars(figure, axes, metrics)
     fixed, constant, broad = (metrics[case]["rmse_mm"] for case in ("rbf_wide", "constant", "reuse"))
-    return style.title(
-        figure,
-        f"Mean error {broad:.1f} mm broad, {fixed:.1f} mm fixed, {constant:.1f} mm for one node (bound: grey)",
-    )
+    finding = f"Mean error {broad:.1f} mm broad, {fixed:.1f} mm fixed, {constant:.1f} mm for one node (bound: grey)"
+    return style.title(figure, finding)
 
 
 def _draw_bars(figure: Any, axes: Any, metrics: AllMetrics) -> None:

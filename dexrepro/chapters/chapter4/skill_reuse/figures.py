@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from scipy.ndimage import maximum_filter1d
 
 from dexrepro.arrays import Array, Mask
 from dexrepro.chapters.chapter4.two_link import ELLIPSE
 from dexrepro.experiment import Config, Drawing, Drawings, Figure, Metrics, Recording
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 ARM = "Two-link arm in PyBullet under the law's torque, gravity and {skill_reuse.task.force.1:g} N at the tip. "
 WEIGHTS = (
@@ -94,13 +94,12 @@ COLUMNS = {
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, Any]:
-    rows = []
-    for case, found in metrics.items():
-        if case in config.cases:
-            network = config.cases[case].law.network
-            gain = "none" if not network else "common" if network.gain == config.law.network.gain else "equal effective"
-            rows.append({"case": case, "gain": gain, **{label: found.get(name) for name, label in COLUMNS.items()}})
-    return {"T4.A": pd.DataFrame(rows)}
+    def told(case: str) -> dict[str, str]:
+        network = config.cases[case].law.network
+        common = network and network.gain == config.law.network.gain
+        return {"gain": "none" if not network else "common" if common else "equal effective"}
+
+    return {"T4.A": by_case(metrics, COLUMNS, config.cases, told=told)}
 
 
 METHODS = {
@@ -162,9 +161,8 @@ def motions_and_nodes(recording: Recording, config: Config) -> Drawing:
         style.panel(panel, letter, text)
         panel.set(xlabel=r"$\dot\alpha_1$ [rad/s$^2$]", ylabel=r"$\dot\alpha_2$ [rad/s$^2$]", aspect="equal")
         panel.set(xlim=(-85, 45), ylim=(-65, 65), xticks=(-50, 0), yticks=(-50, 0, 50))
-    return style.title(
-        figure, f"{trained} nodes serve the strokes; the ellipse adds {len(centres) - trained}, for its start"
-    )
+    finding = f"{trained} nodes serve the strokes; the ellipse adds {len(centres) - trained}, for its start"
+    return style.title(figure, finding)
 
 
 def number(value: float | None) -> float:
@@ -263,9 +261,8 @@ def errors(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawi
     for panel in axes[-1]:
         panel.set_xlabel("Time [s]")
     worst = style.at_most(100 * max(number(metrics[case]["max_usage"]) for case in shown), 0)
-    return style.title(
-        figure, f"Every method stays inside the bound (at most {worst} % of it); they differ in oscillation"
-    )
+    finding = f"Every method stays inside the bound (at most {worst} % of it); they differ in oscillation"
+    return style.title(figure, finding)
 
 
 def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
@@ -290,9 +287,8 @@ def node_counts(recordings: Recordings, metrics: AllMetrics, config: Config) -> 
     bottom[0].set(ylabel="Nodes at first [-]", ylim=(0, 16), yticks=(0, 5, 10, 15))
     last = style.at_most(max(number(metrics[case]["last_node_s"]) for case in shown), 2)
     counts = ", ".join(str(metrics[case]["nodes"]) for case in shown)
-    return style.title(
-        figure, f"A smaller threshold gives more nodes ({counts}), the last at most {last} s into the ellipse"
-    )
+    finding = f"A smaller threshold gives more nodes ({counts}), the last at most {last} s into the ellipse"
+    return style.title(figure, finding)
 
 
 def _count_axes() -> Any:

@@ -59,9 +59,8 @@ def _draw_mechanism(recording: Recording) -> Drawing:
     grid[1, 0].plot(instants, frame["phase0"], **style.LINES["reference"])
     grid[1, 0].annotate("all features sum\nto the phase s", (0.95, 0.6), xycoords="axes fraction", ha="right")
     style.edges(grid, "Time [s]", "[-]")
-    return style.title(
-        figure, "Random images of the kernels join the old features; together they still sum to the phase"
-    )
+    finding = "Random images of the kernels join the old features; together they still sum to the phase"
+    return style.title(figure, finding)
 
 
 def _draw_cost(cost: pd.DataFrame, drift: pd.DataFrame) -> Drawing:

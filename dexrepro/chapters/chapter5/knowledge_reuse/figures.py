@@ -16,7 +16,7 @@ FIGURES = {
         "weights and gains ten nodes a letter and for one that starts anew with as many nodes. Ours; the book says "
         "that learned weights can be accumulated and reused.",
         "Errors in the first second and over each letter, weights kept and learned anew.",
-    ),
+    )
 }
 TABLES = {"T5.I": "RMS joint error [mrad] with weights kept, learned anew, or kept under the printed sign"}
 

@@ -84,10 +84,8 @@ def crossings(recording: Recording, metrics: Any, config: Config) -> Drawing:
     colours = {**names, "goals": style.RIVAL}
     style.legend_below(figure, {name: {"color": colour} for name, colour in colours.items()})
     worst = min(metrics[f"goals{b}.clearance"] for b in (2, 3))
-    return style.title(
-        figure,
-        f"Added features lift the skill; no path of any draw comes nearer than {style.at_least(worst, 1)} cm",
-    )
+    finding = f"Added features lift the skill; no path of any draw comes nearer than {style.at_least(worst, 1)} cm"
+    return style.title(figure, finding)
 
 
 def _lines(paths: Any, kind: str, blocks: int, colour: Any, width: float) -> tuple[list[Any], Any, float]:

@@ -21,7 +21,7 @@ FIGURES = {
         "synthetic A need not hold on these.",
         "Small pictures of handwritten shapes, bars of the share of shapes on which each claim holds, and the order "
         "of the methods on each shape.",
-    ),
+    )
 }
 TABLES = {"T5.L": "The letters' claims on people's own shapes: order of the methods, errors, and which claims fail"}
 

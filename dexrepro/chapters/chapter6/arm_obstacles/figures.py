@@ -81,9 +81,8 @@ def _draw_scene(original: Recording, constrained: Recording, metrics: AllMetrics
     axes.set(xlim=(0, image.shape[1]), ylim=(image.shape[0], 0))
     axes.axis("off")
     before, after = (f"{100 * (metrics[case]['distance_new'] or 0.0):.1f}" for case in ("original", "constrained"))
-    return style.title(
-        figure, f"From arm to new box: {before} cm on the learned path, {after} cm on the constrained one"
-    )
+    finding = f"From arm to new box: {before} cm on the learned path, {after} cm on the constrained one"
+    return style.title(figure, finding)
 
 
 def _pixels(points: Array, shape: tuple[int, ...]) -> Array:

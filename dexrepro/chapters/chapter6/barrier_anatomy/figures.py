@@ -15,7 +15,7 @@ FIGURES = {
         "law's row above 1 stands for a run that stepped over the barrier, in place of its point. Laws by the "
         "acceleration that (6.13) subtracts: the primitive's own, as printed, recorded. Ours.",
         "The barrier's share of the gain, and largest distances over k_2, the margin and the time step.",
-    ),
+    )
 }
 
 

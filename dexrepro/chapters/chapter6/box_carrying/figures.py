@@ -16,7 +16,7 @@ FIGURES = {
         "instants, distance of the box from the middle between the palms, and the smaller palm force. The book shows "
         "photographs of the constrained case.",
         "Pictures of the arms with the box, its distance from the hands and the palm forces, for two sets of paths.",
-    ),
+    )
 }
 UNITS = {"palm_left": "N", "palm_right": "N", "middle": "m", "reference_left": "m", "reference_right": "m"}
 TABLES = {"T6.Sd": "Variants of law, squeeze and joint stiffness in carrying the box"}

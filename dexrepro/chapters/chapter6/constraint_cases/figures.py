@@ -18,7 +18,7 @@ FIGURES = {
         "printed. (b) has a linear axis: outside of a bound V falls slowly, because the pull away from it fades. "
         "Ours; the book has no such figure.",
         "Lyapunov functions and scaled errors over time for four constraint cases, and for (6.17) as printed.",
-    ),
+    )
 }
 UNITS = {"error": "1", "rate": "1", "lyapunov": "1"}
 TABLES = {"T6.2": "alpha_2 and k_n of the four cases, and the worst dV^c/dt over random states"}

@@ -17,7 +17,7 @@ FIGURES = {
         "route, a tube about a forecast detour, against the filter and the outside law. Ours; Sect. 6.5 describes "
         "moving obstacles.",
         "Paths of a reach with a still disk on its way, and distances to a disk that crosses it, under four laws each.",
-    ),
+    )
 }
 UNITS = {"position": "cm", "centre": "cm", "distance": "cm"}
 TABLES = {"T6.C": "Laws that stay outside of a still and of a moving disk"}

@@ -8,6 +8,7 @@ import pandas as pd
 from dexrepro.chapters.chapter6 import plane
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "6.D": Figure(
@@ -15,7 +16,7 @@ FIGURES = {
         "and constrained primitive. (b) Steering over the heading error. (c) Distance to a point obstacle over the "
         "offset of a straight reach. (d) Bars passed by paths that arrive, of five offsets. Ours, on Sect. 6.5.",
         "Paths past a triangle, the steering term over the heading, distances to a point and bars passed, by method.",
-    ),
+    )
 }
 TABLES = {
     "T6.D": "Clearance to the triangle with standard and with tuned parameters (20 settings each), and cost a step",
@@ -24,28 +25,20 @@ TABLES = {
 
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
-    rows, bars = [], []
+    columns = {"clearance": "clearance, standard [cm]", "goal_error": "goal error, standard [cm]",
+               "tuned_clearance": "clearance, tuned [cm]", "settings_that_pass": "settings of 20 that pass",
+               "bars_tuned_20mm": "bars of 2 cm passed, best setting, of 5",
+               "operations": "operations a step"}  # fmt: skip
+    bars = []
     for case in recordings:
-        numbers = metrics[case]
-        rows.append(
-            {
-                "method": case,
-                "clearance, standard [cm]": numbers["clearance"],
-                "goal error, standard [cm]": numbers["goal_error"],
-                "clearance, tuned [cm]": numbers.get("tuned_clearance"),
-                "settings of 20 that pass": numbers.get("settings_that_pass"),
-                "bars of 2 cm passed, best setting, of 5": numbers.get("bars_tuned_20mm"),
-                "operations a step": numbers["operations"],
-            }
-        )
         counts = {
             name.removeprefix("bars_passed_").removesuffix("mm") + " mm": value
-            for name, value in numbers.items()
+            for name, value in metrics[case].items()
             if name.startswith("bars_passed_")
         }
         if counts:
             bars.append({"method": case, **counts})
-    return {"T6.D": pd.DataFrame(rows), "T6.E": pd.DataFrame(bars)}
+    return {"T6.D": by_case(metrics, columns, recordings, "method"), "T6.E": pd.DataFrame(bars)}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:

@@ -10,6 +10,7 @@ import pandas as pd
 from dexrepro.chapters.chapter6 import plane
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recording, Recordings
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "6.2d": Figure(
@@ -17,7 +18,7 @@ FIGURES = {
         "and V^c for the readings of the law; above with a time constant of the segment's duration, below of 1 s. A "
         "curve ends, with a cross, where its law is no longer defined. The book shows the path alone.",
         "Paths, distances to the reference and Lyapunov functions for the readings of the law and two time constants.",
-    ),
+    )
 }
 UNITS = {"position": "cm", "reference": "cm", "distance": "cm", "lyapunov": "1", "projected": "1"}
 TABLES = {
@@ -37,13 +38,13 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
         "clearance": "clearance [cm]",
         "weight_effect": "path change for other weights [cm]",
     }
-    rows = []
-    for case in recordings:
-        numbers, c = metrics[case], config.cases[case]
+
+    def told(case: str) -> dict[str, Any]:
+        c = config.cases[case]
         tau = "segment" if c.dmp.tau is None else f"{c.dmp.tau:g} s"
-        setting = {"law": c.cdmp.law, "tau": tau, "margin [cm]": c.cdmp.margin, "weight": c.cdmp.weight}
-        rows.append({"case": case, **setting, **{text: numbers[key] for key, text in columns.items()}})
-    table = pd.DataFrame(rows)
+        return {"law": c.cdmp.law, "tau": tau, "margin [cm]": c.cdmp.margin, "weight": c.cdmp.weight}
+
+    table = by_case(metrics, columns, recordings, told=told)
     plain = table["case"].isin(list(LINES) + ["none"])
     return {"T6.A": table[plain], "T6.S": table[~plain]}
 

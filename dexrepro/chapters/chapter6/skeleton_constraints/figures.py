@@ -208,9 +208,8 @@ def _draw_lengths(run: Recording, numbers: Metrics, settings: Config) -> Drawing
     panels[1].legend(loc="upper right")
     kept, lost = numbers["length_error_constrained"], numbers["length_error_original"]
     within = style.at_most(kept or 0.0, 2)
-    return style.title(
-        figure, f"Constrained links keep their length within {within} cm, original ones miss it by up to {lost:.0f} cm"
-    )
+    finding = f"Constrained links keep their length within {within} cm, original ones miss it by up to {lost:.0f} cm"
+    return style.title(figure, finding)
 
 
 def _draw_hands(run: Recording, numbers: Metrics, settings: Config) -> Drawing:
@@ -224,6 +223,5 @@ def _draw_hands(run: Recording, numbers: Metrics, settings: Config) -> Drawing:
     before, after = (
         [numbers[f"hands_{kind}_{end}"] for end in ("low", "high")] for kind in ("original", "constrained")
     )
-    return style.title(
-        figure, f"Hands: {before[0]:.0f} to {before[1]:.0f} cm becomes\n{after[0]:.1f} to {after[1]:.1f} cm"
-    )
+    finding = f"Hands: {before[0]:.0f} to {before[1]:.0f} cm becomes\n{after[0]:.1f} to {after[1]:.1f} cm"
+    return style.title(figure, finding)

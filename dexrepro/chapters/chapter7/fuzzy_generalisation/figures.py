@@ -20,7 +20,7 @@ FIGURES = {
         "shaded: what they do before obstacles of 2 to 8 cm. (c) Directions in between, grey, and the left-forward "
         "one, with the clearance against the direction. (d) Stiffness between those of the demonstrated heights.",
         "Paths to a new goal past a new obstacle in three directions, and by how much the directions between clear it.",
-    ),
+    )
 }
 UNITS = {
     "old": "cm", "new": "cm", "height": "cm", "between": "cm", "chosen": "cm", "stiffness": "1",

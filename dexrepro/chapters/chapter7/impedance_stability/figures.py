@@ -20,7 +20,7 @@ FIGURES = {
         "initial error of 0.2 rad in each joint, torque limit lifted. Not in the book, whose proof in continuous time "
         "has no upper bound.",
         "Spectral radius and measured torque travel against the gain, and V over time, logarithmic.",
-    ),
+    )
 }
 UNITS = {
     "reference": "rad", "planned": "m", "filtered_error": "rad/s", "impedance": "N m s/rad", "stiffness": "1",

@@ -9,6 +9,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 FIGURES = {
     "7.D": Figure(
@@ -17,7 +18,7 @@ FIGURES = {
         "Contact force. (b) Sideways deviation caused by the push before the obstacle. (c) Deviation under the three "
         "pushes without estimation; dots: with it.",
         "Contact force, a push and the deviations under three pushes, for four impedances with and without estimation.",
-    ),
+    )
 }
 UNITS = {
     "reference": "rad", "planned": "m", "filtered_error": "rad/s", "impedance": "N m s/rad", "stiffness": "1",
@@ -79,19 +80,12 @@ def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing
 
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     names = {str(config.cases[case].law.get("impedance")): text for case, text in NAMES.items() if case in config.cases}
-    rows = [
-        {
-            "impedance": names.get(str(config.cases[case].law.get("impedance")), case),
-            "estimation": config.cases[case].law.get("estimation", True),
-            "peak contact force [N]": values["contact_peak"],
-            "contact impulse [N s]": values["contact_impulse"],
-            "push before [mm]": values["before_push"],
-            "push behind [mm]": values["behind_push"],
-            "push at rest [mm]": values["rest_push"],
-            "static deviation [mm]": values["static_deviation"],
-            "RMS error of the run [mm]": values["rms_error"],
-        }
-        for case, values in metrics.items()
-        if case in config.cases
-    ]
-    return {"T7.D": pd.DataFrame(rows)}
+    columns = {"contact_peak": "peak contact force [N]", "contact_impulse": "contact impulse [N s]",
+               "before_push": "push before [mm]", "behind_push": "push behind [mm]", "rest_push": "push at rest [mm]",
+               "static_deviation": "static deviation [mm]", "rms_error": "RMS error of the run [mm]"}  # fmt: skip
+
+    def told(case: str) -> dict[str, Any]:
+        law = config.cases[case].law
+        return {"impedance": names.get(str(law.get("impedance")), case), "estimation": law.get("estimation", True)}
+
+    return {"T7.D": by_case(metrics, columns, config.cases, told=told).drop(columns="case")}

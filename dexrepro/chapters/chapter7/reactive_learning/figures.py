@@ -20,7 +20,7 @@ FIGURES = {
         "demonstration while groups are added, median and range of ten draws of the random nodes; the old nodes keep "
         "their weights (blue, as in (7.17)) or are fitted again (orange, the other reading of (7.19)).",
         "Learned and demonstrated reactions for three numbers of groups, and their error over the number of groups.",
-    ),
+    )
 }
 UNITS = {"ordinary": "cm", "groups": "cm", "demonstrations": "cm"}
 TABLES = {"T7.2": "Learning the reactions to the low, close obstacle"}

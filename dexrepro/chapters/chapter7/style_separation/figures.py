@@ -17,7 +17,7 @@ FIGURES = {
         "number of reactions that touch the obstacle. (c) Singular values of the reactive forcing terms of each "
         "coordinate. Green: demonstrations whose shape differs between directions.",
         "Errors over the number of style parameters, for each coordinate and for all together, and singular values.",
-    ),
+    )
 }
 TABLES = {"T7.A": "Reactions represented by a common basis and style parameters"}
 

@@ -21,7 +21,7 @@ FIGURES = {
         "and the share of reactions that touch the obstacle; the person's own reactions to these conditions touch it "
         "in the share drawn as a line.",
         "Errors of five ways to react where a condition was left out, and in unseen ones with the share that touch.",
-    ),
+    )
 }
 TABLES = {"T7.3": "Reactions to conditions that were never shown"}
 

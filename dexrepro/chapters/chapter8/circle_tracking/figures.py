@@ -151,9 +151,8 @@ def _draw_friction(recordings: Recordings, metrics: AllMetrics, config: Config) 
     style.panels(grid[:, 0], "Path", "Error; shaded: bound of the networks", "Closer")
     figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=6)
     errors = "; ".join(f"{label} {metrics[case]['early_x']:.2g}" for case, (label, _) in lines.items())
-    return style.title(
-        figure, f"RMS error in x under friction, {config.settled:g} to {config.early:g} s [mm]: {errors}"
-    )
+    finding = f"RMS error in x under friction, {config.settled:g} to {config.early:g} s [mm]: {errors}"
+    return style.title(figure, finding)
 
 
 def _draw_centres(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:

@@ -12,6 +12,7 @@ from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, closed_form_gain, steady_fraction
 from dexrepro.experiment import AllMetrics, Config, Drawing, Drawings, Figure, Film, Recordings
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 from .experiment import VIEW
 
@@ -206,17 +207,13 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
                "gain_s": "K_s [N/m]", "gain_error": "error of the gain [-]", "iterations": "iterations",
                "nodes_d": "nodes for D", "nodes_c": "nodes for C", "nodes_g": "nodes for G",
                "peak_torque": "peak torque [N m]", "stopped_at": "stopped at [s]"}  # fmt: skip
-    rows = [
-        {"case": case, "stiffness [N/m]": config.cases[case].sponge.stiffness}
-        | {text: metrics[case].get(name) for name, text in columns.items()}
-        for case in recordings
-        if case in metrics
-    ]
     ends = {
         f"{case}_end": {"peak_compression": metrics[case].get("final_compression")} for case in _BASE if case in metrics
     }
     tables = {
-        "T8.E": pd.DataFrame(rows),
+        "T8.E": by_case(
+            metrics, columns, recordings, told=lambda case: {"stiffness [N/m]": config.cases[case].sponge.stiffness}
+        ),
         "T8.Sc": sensitivity_table(VARIANTS, {**metrics, **ends}, columns, config),
     }
     if "learned" in recordings:

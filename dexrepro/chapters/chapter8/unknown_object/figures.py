@@ -188,9 +188,8 @@ def _draw_gain(recordings: Recordings, metrics: AllMetrics, config: Config) -> D
     grid[0, 0].legend(loc="center left", fontsize=6.5)
     style.panels(grid[0], "Gain in use", "Iterates of the policy iteration")
     digits, seconds = metrics["soft"]["digits"], np.ptp(soft.time[soft["phase"] == EXPLORING])
-    return style.title(
-        figure, f"{len(steps)} iterations on {seconds:.0f} s of contact find the optimum to {digits:.1f} digits"
-    )
+    finding = f"{len(steps)} iterations on {seconds:.0f} s of contact find the optimum to {digits:.1f} digits"
+    return style.title(figure, finding)
 
 
 def _draw_objects(recordings: Recordings, metrics: Any, config: Config) -> Drawing:

@@ -7,6 +7,7 @@ import pandas as pd
 
 from dexrepro.experiment import AllMetrics, Config, Drawings, Figure, Recordings
 from dexrepro.report import style
+from dexrepro.report.tables import by_case
 
 from .experiment import distance
 
@@ -58,13 +59,5 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
         "force_peak": "largest force [N]",
         "saturated": "share of time at a torque limit",
     }
-    rows = [
-        {
-            "case": case,
-            "law": config.cases[case].law["_target_"],
-            **{text: metrics[case][name] for name, text in names.items()},
-            "status": run.status,
-        }
-        for case, run in recordings.items()
-    ]
-    return {"own.T": pd.DataFrame(rows)}
+    table = by_case(metrics, names, recordings, told=lambda case: {"law": config.cases[case].law["_target_"]})
+    return {"own.T": table.assign(status=[run.status for run in recordings.values()])}
