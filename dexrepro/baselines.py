@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters
+from dexrepro.checks import is_number
 from dexrepro.config import in_quotes
 from dexrepro.errors import InputError
 from dexrepro.physics.engine import REFERENCE
@@ -256,7 +257,7 @@ def _compare_tables(report: ChapterReport, folder: Path, stored: Baseline) -> No
 
 def _same_cell(value: Any, stored: Any, size: float, metrics: Mapping[str, Mapping[str, Any]]) -> bool:
     """Whether a cell is what it was, within 5 % or the tolerance of the metrics that it may show, in whatever unit."""
-    numbers = [isinstance(cell, int | float) and not isinstance(cell, bool) for cell in (value, stored)]
+    numbers = list(map(is_number, (value, stored)))
     if not all(numbers) or stored == 0:
         return value == stored or (all(numbers) and abs(value) <= 1e-6 + 1e-3 * size)
     tolerance = TABLE

@@ -8,14 +8,14 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, refused
 
 
 def check_words(config: Mapping[str, Any], words: Mapping[str, tuple[str, ...]], where: str) -> None:
     """Refuse a word that no branch of the code knows, naming those there are."""
     for key, value in leaves(config):
         if isinstance(value, str) and value not in words.get(key, (value,)):
-            raise InputError(f"{where}.{key} = {value} is not allowed: it must be one of {', '.join(words[key])}")
+            raise refused(f"{where}.{key}", value, f"be one of {', '.join(words[key])}")
 
 
 _POSITIVE = re.compile(
@@ -28,21 +28,19 @@ def check_values(config: Mapping[str, Any], where: str) -> None:
     """Refuse values outside their physical range, in one sentence that names key, value and range."""
     for key, value in leaves(config):
         name = next((part for part in reversed(key.split(".")) if not part.isdigit()), key)
-        if not isinstance(value, int | float) or isinstance(value, bool):
+        if not is_number(value):
             continue
         if not abs(value) < math.inf or abs(value) > sys.float_info.max:
-            raise InputError(f"{where}.{key} = {str(value)[:20]} is not allowed: it must be a finite number")
+            raise refused(f"{where}.{key}", str(value)[:20], "be a finite number")
         if _POSITIVE.search(name) and value <= 0:
-            raise InputError(f"{where}.{key} = {value} is not allowed: it must be greater than 0")
+            raise refused(f"{where}.{key}", value, "be greater than 0")
         if _NOT_NEGATIVE.search(name) and value < 0:
-            raise InputError(f"{where}.{key} = {value} is not allowed: it must be 0 or greater")
+            raise refused(f"{where}.{key}", value, "be 0 or greater")
     values = dict(leaves(config))
     steps = [v for k, v in values.items() if k.rpartition(".")[2] in ("control_period", "step") and is_number(v)]
     for key, value in values.items():
         if key.rpartition(".")[2] == "duration" and is_number(value) and steps and value < min(steps):
-            raise InputError(
-                f"{where}.{key} = {value} is not allowed: it must be at least one step of {min(steps):g} s"
-            )
+            raise refused(f"{where}.{key}", value, f"be at least one step of {min(steps):g} s")
 
 
 def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
@@ -59,13 +57,13 @@ def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: st
         numbers = [is_number(item) for _, item in leaves(book)]
         if not isinstance(book, Mapping) and numbers and all(numbers):
             if isinstance(value, Mapping):
-                raise InputError(f"{where}.{key} = {dict(value)} is not allowed: it must be a number")
+                raise refused(f"{where}.{key}", dict(value), "be a number")
             for place, item in leaves(value):
                 quantity = _POSITIVE.search(key) or _NOT_NEGATIVE.search(key)
                 if not is_number(item) and (item is not None or quantity):
                     dotted = f"{where}.{key}.{place}".rstrip(".")
                     shown = "null" if item is None else repr(item)
-                    raise InputError(f"{dotted} = {shown} is not allowed: it must be a number")
+                    raise refused(dotted, shown, "be a number")
 
 
 _A_LINK = ("lengths", "masses", "inertias", "centres")  # one value a link each
@@ -83,7 +81,7 @@ def check_lengths(config: Mapping[str, Any], shipped: Mapping[str, Any], where: 
         if isinstance(value, Mapping) and isinstance(book, Mapping):
             check_lengths(value, book, f"{where}.{key}")
         elif isinstance(value, list) and isinstance(book, list) and _VECTOR.search(key) and len(value) != len(book):
-            raise InputError(f"{where}.{key} = {value} is not allowed: it must have {len(book)} values")
+            raise refused(f"{where}.{key}", value, f"have {len(book)} values")
 
 
 def is_whole(value: Any) -> bool:

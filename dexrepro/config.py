@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from dexrepro import chapters
 from dexrepro.checks import check_values, is_number, is_whole, leaves
-from dexrepro.errors import InputError, nearest
+from dexrepro.errors import InputError, nearest, refused
 from dexrepro.kept import kept
 from dexrepro.physics.engine import ENGINES, is_installed
 
@@ -305,30 +305,28 @@ def check_settings(composed: Mapping[str, Any]) -> None:
         raise InputError(f"'{removed[0]}' cannot be left out; give it a value instead")
     seed, results, figure = composed["seed"], composed["results"], composed["figure"]
     if not is_whole(seed) or not 0 <= seed < 1 << 64:
-        raise InputError(
-            f"seed = {str(seed)[:40]} is not allowed: it must be a whole number of 0 or greater, below 2^64"
-        )
+        raise refused("seed", str(seed)[:40], "be a whole number of 0 or greater, below 2^64")
     if not isinstance(results, str) or not results:
-        raise InputError(f"results = {results!r} is not allowed: it must be the name of a folder")
+        raise refused("results", repr(results), "be the name of a folder")
     if isinstance(figure, list):
-        raise InputError(f"figure = {figure} is not allowed: it must be one figure or table, such as 2.7 or T2.1")
+        raise refused("figure", figure, "be one figure or table, such as 2.7 or T2.1")
     scene = composed.get("scene")
     if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]*", name := str(scene.get("name"))):
         raise InputError(f"scene.name = {name} is not allowed: it names a folder; use letters, digits, '_' and '-'")
     check_engine(composed["engine"])
     timeout = composed["case_timeout"]
     if timeout is not None and not (is_number(timeout) and 0 < timeout < math.inf):
-        raise InputError(f"case_timeout = {timeout} is not allowed: it must be a number of seconds greater than 0")
+        raise refused("case_timeout", timeout, "be a number of seconds greater than 0")
     for key in ("force", "quiet", "gui"):
         if not isinstance(composed[key], bool):
-            raise InputError(f"{key} = {composed[key]} is not allowed: it must be true or false")
+            raise refused(key, composed[key], "be true or false")
 
 
 def check_engine(engine: Any) -> None:
     """Refuse an engine that there is not, or not here."""
     words = [engine] if engine is not None else list(ENGINES)
     if not all(isinstance(word, str) and word in ENGINES for word in words):
-        raise InputError(f"engine = {engine} is not allowed: it must be one of {', '.join(ENGINES)}")
+        raise refused("engine", engine, f"be one of {', '.join(ENGINES)}")
     if not any(map(is_installed, words)):
         raise InputError(
             f"engine = {words[0]} needs {ENGINES[words[0]]}, which is not installed here: pip install {words[-1]}"

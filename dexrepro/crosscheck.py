@@ -19,7 +19,7 @@ from dexrepro.baselines import Baseline, agrees, baseline_dir
 from dexrepro.claims import NOT_EVALUATED
 from dexrepro.errors import InputError
 from dexrepro.plan import Plan, plan_chapter, uses_engine
-from dexrepro.progress import Progress
+from dexrepro.progress import Silent
 from dexrepro.runner import flat, run_plans
 from dexrepro.storage import read_json, require, write_json
 
@@ -63,7 +63,7 @@ class Comparison:
 
 
 def run(
-    chapter: str, only: Sequence[str], results: Path, workers: int | None, progress: Progress | None = None
+    chapter: str, only: Sequence[str], results: Path, workers: int | None, progress: Silent | None = None
 ) -> list[Comparison]:
     """Run what simulates arms under the other engine and compare. Raises InputError where a case fails."""
     words = [f"results='{results}'", f"engine={OTHER}", *([f"only=[{','.join(only)}]"] if only else [])]

@@ -14,6 +14,11 @@ class InputError(Exception):
     """Something the user wrote cannot be used; the message is one sentence that says what would be right."""
 
 
+def refused(key: str, value: object, must: str) -> InputError:
+    """The error of a value that is not allowed; must: what would be right, such as "be greater than 0"."""
+    return InputError(f"{key} = {value} is not allowed: it must {must}")
+
+
 def folder_named(name: str, key: str = "results") -> Path:
     """A folder as the user names it, "~" being the home. Raises InputError where no folder can have the name."""
     try:
@@ -45,9 +50,7 @@ def whole_number(key: str, text: str, least: int, most: int) -> int:
     """A whole number as the user writes it. Raises InputError for another word and beyond least..most."""
     if re.fullmatch("[0-9]{1,12}", text) and least <= int(text) <= most:
         return int(text)
-    raise InputError(
-        f"{key} = {text[:80] or 'null'} is not allowed: it must be a whole number of {least} or greater, {most} at most"
-    )
+    raise refused(key, text[:80] or "null", f"be a whole number of {least} or greater, {most} at most")
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

@@ -24,7 +24,7 @@ from dexrepro.case import targets
 from dexrepro.checks import check_lengths, check_types, check_words, differences, leaves, same
 from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block
 from dexrepro.control.contract import KINDS, takes
-from dexrepro.errors import InputError, folder_named, nearest
+from dexrepro.errors import InputError, folder_named, nearest, refused
 from dexrepro.experiment import Experiment
 from dexrepro.physics.engine import REFERENCE, default
 from dexrepro.provenance import words_of
@@ -126,7 +126,7 @@ def _of_cases(plans: list[Plan], wanted: str | Sequence[str] | None) -> list[Pla
         return plans
     patterns = [str(name) for name in (wanted if isinstance(wanted, list) else [wanted])]
     if not patterns:
-        raise InputError("case = [] is not allowed: it must name a case")
+        raise refused("case", "[]", "name a case")
     names = [job.case for plan in plans for job in plan.jobs]
     for pattern in patterns:
         if not fnmatch.filter(names, pattern):

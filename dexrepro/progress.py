@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from dexrepro.runner import CaseEntry
 
 
-class Progress(Protocol):
-    """Told by the runner what happens; ``tick`` is called several times a second."""
+class Silent:
+    """Told by the runner what happens, and shows nothing; ``tick`` is called several times a second."""
 
     def begin(self, cases: Sequence[str], processes: int) -> None: ...
     def tick(self) -> None: ...
@@ -24,31 +24,6 @@ class Progress(Protocol):
     def finished(self, name: str, entry: CaseEntry) -> None: ...
     def failed(self, name: str, sentence: str) -> None: ...
     def assembled(self, experiment: str) -> None: ...
-
-
-class Silent:
-    """Shows nothing."""
-
-    def begin(self, cases: Sequence[str], processes: int) -> None:
-        pass
-
-    def tick(self) -> None:
-        pass
-
-    def report(self, process: int, simulated: float, duration: float) -> None:
-        pass
-
-    def note(self, sentence: str) -> None:
-        pass
-
-    def finished(self, name: str, entry: CaseEntry) -> None:
-        pass
-
-    def failed(self, name: str, sentence: str) -> None:
-        pass
-
-    def assembled(self, experiment: str) -> None:
-        pass
 
 
 SILENCE = 10.0  # s after which a line says how far it is

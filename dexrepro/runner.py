@@ -26,7 +26,7 @@ from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
 from dexrepro.plan import PARTIAL, Job, Plan, check_own, import_anew, outdated, own_digest, presentation
 from dexrepro.pool import COMPLETES, Failure, Pool, start_method
-from dexrepro.progress import Progress, Silent
+from dexrepro.progress import Silent
 from dexrepro.storage import (
     claimed,
     copy,
@@ -341,7 +341,7 @@ def _prune(plan: Plan) -> None:
 # ------------------------------------------------------------------------------------------------------- scheduling
 
 
-def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progress: Progress | None = None) -> Outcome:
+def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progress: Silent | None = None) -> Outcome:
     """Run what is missing, assemble each experiment as its last case ends; a failing case does not stop the others."""
     progress = progress or Silent()
     outcome = Outcome(differs={plan.experiment: plan.differs for plan in plans if plan.chapter != chapters.OWN})

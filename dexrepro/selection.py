@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dexrepro import chapters
+from dexrepro.checks import is_whole
 from dexrepro.config import (
     SETTINGS,
     as_written,
@@ -20,19 +21,12 @@ from dexrepro.config import (
     own_keys,
     parsed,
 )
-from dexrepro.errors import InputError, existing_folder, folder_named, nearest
+from dexrepro.errors import InputError, existing_folder, folder_named, nearest, refused
 from dexrepro.keys import KEYS, SELECTION, TAKEN
 from dexrepro.plan import select
 
-FILES = (
-    "demonstrations",
-    "csv",
-    "file",
-    "path",
-    "files",
-    "obstacle_files",
-    "block_file",
-)  # keys whose values are names of files
+FILES = ("demonstrations", "csv", "file", "path", "files", "obstacle_files", "block_file")
+"""Keys whose values are names of files."""
 
 
 class Selection(NamedTuple):
@@ -183,9 +177,9 @@ def positive_workers(value: Any) -> int | None:
     """The number of processes, None for one a core."""
     if isinstance(value, str) and re.fullmatch("[0-9]{1,12}", value):
         value = int(value)
-    if value is None or (isinstance(value, int) and not isinstance(value, bool) and value > 0):
+    if value is None or (is_whole(value) and value > 0):
         return value
-    raise InputError(f"workers = {value} is not allowed: it must be a whole number of 1 or greater")
+    raise refused("workers", value, "be a whole number of 1 or greater")
 
 
 def existing(results: Path) -> Path:

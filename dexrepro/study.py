@@ -32,7 +32,7 @@ from dexrepro.arrays import Array
 from dexrepro.baselines import baseline_dir
 from dexrepro.case import live
 from dexrepro.case import run as run_case
-from dexrepro.checks import leaves, set_value, value_at
+from dexrepro.checks import is_number, leaves, set_value, value_at
 from dexrepro.claims import LOOKS, OPEN, Claim, robustness
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.errors import InputError, nearest
@@ -98,8 +98,7 @@ def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
         shared = any(key == name or key.startswith(f"{name}.") for name in referred)
         if (origin.low is not None or origin.drawn) and (own or shared):
             for place, value in leaves(value_at(composed, key)):
-                number = isinstance(value, int | float) and not isinstance(value, bool)
-                if value in origin.words if origin.drawn else number:
+                if value in origin.words if origin.drawn else is_number(value):
                     found[f"{key}.{place}".rstrip(".")] = origin
     return found
 

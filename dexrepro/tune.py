@@ -27,10 +27,10 @@ from dexrepro import chapters
 from dexrepro.arrays import Array
 from dexrepro.case import live, targets
 from dexrepro.case import run as run_case
-from dexrepro.checks import leaves, set_value, value_at
+from dexrepro.checks import is_number, leaves, set_value, value_at
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import KINDS, is_plain
-from dexrepro.errors import InputError, importable, nearest
+from dexrepro.errors import InputError, importable, nearest, refused
 from dexrepro.experiment import Metrics
 from dexrepro.plan import content_of, lacking, writable
 from dexrepro.pool import Failure, Pool
@@ -125,9 +125,9 @@ def search_of(
     composed = compose_chapter(numbers[0], overrides)
     cases = experiment_cases(composed, experiment)
     if name not in cases:
-        raise InputError(f"case = {case} is not allowed: it must be EXPERIMENT.CASE; {nearest(name, cases)}")
+        raise refused("case", case, f"be EXPERIMENT.CASE; {nearest(name, cases)}")
     values, declared = cases[name], _declared(numbers[0], experiment, composed)
-    declared = {key: span for key, span in declared.items() if _is_number(value_at(values, key))}
+    declared = {key: span for key, span in declared.items() if is_number(value_at(values, key))}
     ranges = dict(_asked(word, values, declared) for word in parameters)
     ranges, guessed = (ranges, False) if ranges else _of_laws(values, declared, composed[experiment])
     listed = name not in (composed[experiment].get("cases") or {"default": {}})
@@ -151,7 +151,7 @@ def _declared(chapter: str, experiment: str, composed: Mapping[str, Any]) -> dic
 def _asked(word: str, values: Mapping[str, Any], declared: Mapping[str, Range]) -> tuple[str, Range]:
     """A parameter and its range from a word such as ``law.gain=0.01..0.1``."""
     key, mark, text = word.partition("=")
-    numbers = [name for name, value in leaves(values) if _is_number(value)]
+    numbers = [name for name, value in leaves(values) if is_number(value)]
     if key not in numbers:
         raise InputError(f"unknown parameter '{key}': {nearest(key, numbers)}")
     if not mark and key in declared:
@@ -162,7 +162,7 @@ def _asked(word: str, values: Mapping[str, Any], declared: Mapping[str, Range]) 
     except ValueError:
         low = high = 0.0
     if not low < high:
-        raise InputError(f"{key} = {text} is not allowed: it must be a range such as {key}=0.1..1, low before high")
+        raise refused(key, text, f"be a range such as {key}=0.1..1, low before high")
     return key, (low, high)
 
 
@@ -181,10 +181,6 @@ def _of_laws(
         return found, False
     own = {key: value for key, value in own.items() if value > 0 and not isinstance(value_at(block, key), str)}
     return {key: (value / 4, value * 4) for key, value in own.items()}, True
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _laws(values: Mapping[str, Any]) -> list[str]:

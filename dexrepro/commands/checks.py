@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from dexrepro.commands import FAILED, OK, SHOWN, WRONG, command, option, out, say, warn
 from dexrepro.commands.run import WITHOUT_PYBULLET, launch
-from dexrepro.errors import InputError, whole_number
+from dexrepro.errors import InputError, refused, whole_number
 from dexrepro.keys import SELECTION
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def _hours(text: str | None) -> float | None:
     with suppress(ValueError):
         if text is None or (math.isfinite(float(text)) and float(text) > 0):
             return float(text) if text else None
-    raise InputError(f"hours = {text} is not allowed: it must be a number greater than 0")
+    raise refused("hours", text, "be a number greater than 0")
 
 
 def _study_jobs(options: argparse.Namespace) -> int:

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 from dexrepro.commands import FAILED, OK, command, option, out, say, warn
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, refused
 from dexrepro.keys import SELECTION
 
 
@@ -151,7 +151,7 @@ def render_command(options: argparse.Namespace) -> int:
     allow = [name for name in values.get("allow", "").strip("[]").split(",") if name]
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
-        raise InputError(f"format = {kind} is not allowed: it must be gif or mp4")
+        raise refused("format", kind, "be gif or mp4")
     if "case" in values and not folders and not only:
         raise InputError(f"case = {values['case']}: of which experiment? add only=EXPERIMENT or a result folder")
     films = []

@@ -33,6 +33,7 @@ UNITS = {  # of the channels that arms, bodies and objects of the world record a
     "position": "rad", "velocity": "rad/s", "torque": "N m", "tip": "m", "force": "N", "sensed_force": "N",
     "length": "m", "slip": "m", "pose": "m, m, m, 1, 1, 1, 1",
 }  # fmt: skip
+TELLING = ("error", "force", "contact", "distance", "rcm_distance", "estimate", "lyapunov", "stiffness", "reference")
 ARMS = ("arm", "leader", "follower", "left", "right", "object")
 
 
@@ -128,18 +129,7 @@ def _first(names: list[str], cases: list[str], film: Film | None) -> dict[str, l
     """What is shown before the reader chooses: the channel of the film, or errors and forces, of at most four cases."""
     wanted = [film.channel] if film and film.channel in names else []
     own = [name for name in names if name.rpartition(".")[0] not in ARMS[:-1]]
-    telling = (
-        "error",
-        "force",
-        "contact",
-        "distance",
-        "rcm_distance",
-        "estimate",
-        "lyapunov",
-        "stiffness",
-        "reference",
-    )
-    wanted += [name for word in telling for name in own if name.rpartition(".")[2] == word]
+    wanted += [name for word in TELLING for name in own if name.rpartition(".")[2] == word]
     wanted = list(dict.fromkeys([*wanted, *own, *names]))
     shown = cases[:4]
     if film and film.case in cases and film.case not in shown:

@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure, FigureBase
 from matplotlib.text import Text
 
-from dexrepro.errors import InputError
+from dexrepro.errors import refused
 from dexrepro.experiment import Experiment
 from dexrepro.plan import matches
 from dexrepro.report.style import TWO_COLUMNS, file_stem, style
@@ -53,7 +53,7 @@ def checked(kind: str, look: str) -> tuple[str, str]:
     """Raises InputError for a format or a look that does not exist."""
     for key, value, known in (("format", kind, FORMATS), ("style", look, tuple(STYLES))):
         if value not in known:
-            raise InputError(f"{key} = {value} is not allowed: it must be one of {', '.join(known)}")
+            raise refused(key, value, f"be one of {', '.join(known)}")
     return kind, look
 
 

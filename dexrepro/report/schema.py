@@ -10,13 +10,8 @@ from dexrepro.config import SETTINGS, compose_chapter, resolved_block
 from dexrepro.keys import KEYS
 from dexrepro.provenance import Provenance, origin_of, provenance
 
-TYPES: dict[type, Any] = {
-    bool: "boolean",
-    int: ["number", "array"],
-    float: ["number", "array"],
-    str: "string",
-    list: "array",
-}
+NUMBER = ["number", "array"]
+TYPES: dict[type, Any] = {bool: "boolean", int: NUMBER, float: NUMBER, str: "string", list: "array"}
 
 
 def schema() -> dict[str, Any]:

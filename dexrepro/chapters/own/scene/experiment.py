@@ -13,7 +13,7 @@ from dexrepro.chapters.own.drivers import driver
 from dexrepro.chapters.own.paths import leader_path
 from dexrepro.checks import is_number
 from dexrepro.control.motion import Path
-from dexrepro.errors import InputError, nearest
+from dexrepro.errors import InputError, nearest, refused
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms
 from dexrepro.physics.elements import Elastic, Ends, Push, TipForce
@@ -50,11 +50,9 @@ def scene(config: Config, noise: np.random.Generator | None = None) -> World:
     """
     given = {name: _blocks(config, name) for name in BLOCKS}
     if not (config.desired_force is None or is_number(config.desired_force)):
-        raise InputError(f"scene.desired_force = {config.desired_force} is not allowed: it must be a number, or null")
+        raise refused("scene.desired_force", config.desired_force, "be a number, or null")
     if not isinstance(config.gravity_compensation, bool):
-        raise InputError(
-            f"scene.gravity_compensation = {config.gravity_compensation} is not allowed: it must be true or false"
-        )
+        raise refused("scene.gravity_compensation", config.gravity_compensation, "be true or false")
     world = World(step=config.step, gravity=config.gravity, perturbation=config.perturbation)
     path = leader_path(config)
     arm = loaded(config.arm, *given["payload"])
@@ -79,7 +77,7 @@ def scene(config: Config, noise: np.random.Generator | None = None) -> World:
         world.add(Push("arm", force, link, point, f"push{number or ''}"))
     for box in given["box"]:
         if min(box["size"]) <= 0:
-            raise InputError(f"scene.box.size = {box['size']} is not allowed: it must be greater than 0")
+            raise refused("scene.box.size", box["size"], "be greater than 0")
         world.add_box("box", box.pop("size"), box.pop("position"), **box)
     return world
 
@@ -105,7 +103,7 @@ def _blocks(config: Config, name: str) -> list[dict[str, Any]]:
     for number, block in enumerate(blocks):
         where = f"scene.{name}.{number}" if isinstance(given, list) else f"scene.{name}"
         if not isinstance(block, dict):
-            raise InputError(f"{where} = {block} is not allowed: it must have {', '.join(BLOCKS[name])}")
+            raise refused(where, block, f"have {', '.join(BLOCKS[name])}")
         if unknown := [key for key in block if key not in BLOCKS[name]]:
             raise InputError(f"unknown key '{where}.{unknown[0]}': {nearest(unknown[0], BLOCKS[name])}")
         for key in (*NEEDED[name], *block):
@@ -113,7 +111,7 @@ def _blocks(config: Config, name: str) -> list[dict[str, Any]]:
             fits = _vector(value, 3) if length == 3 else _vector([value], 1) if length == 1 else isinstance(value, str)
             if not fits and not (key == "to" and value == "leader"):
                 kind = {0: "a name", 1: "a number", 3: "three numbers"}[length]
-                raise InputError(f"{where}.{key} = {value} is not allowed: it must be {kind}")
+                raise refused(f"{where}.{key}", value, f"be {kind}")
     if len(blocks) > 1 and name in ("payload", "sensor", "box"):
         raise InputError(f"scene.{name} is given {len(blocks)} times; it must be one")
     return [dict(block) for block in blocks]
@@ -135,7 +133,7 @@ def wall(
     k d - c d' along the normal, d the depth [m], never pulling."""
     length = float(np.linalg.norm(normal))
     if not length > 0:
-        raise InputError("scene.wall.normal = [0, 0, 0] is not allowed: it must have a direction")
+        raise refused("scene.wall.normal", "[0, 0, 0]", "have a direction")
     place, out = np.array(point, dtype=float), np.array(normal, dtype=float) / length
 
     def law(_: float, position: Array, velocity: Array) -> Array:
@@ -157,10 +155,10 @@ def start(config: Config, path: Path) -> Array:
     """
     arm, found, first = config.arm, config.start, None
     if not _vector(config.offset):
-        raise InputError(f"scene.offset = {config.offset} is not allowed: it must be three numbers")
+        raise refused("scene.offset", config.offset, "be three numbers")
     offset = np.array(config.offset, dtype=float)
     if found is not None and not _vector(found, arm.dof):
-        raise InputError(f"scene.start = {found} is not allowed: it must be {arm.dof} joint angles, or null")
+        raise refused("scene.start", found, f"be {arm.dof} joint angles, or null")
     for time in np.linspace(0.0, config.duration, CHECKED):
         place = path(time).position + offset
         where = f"({', '.join(f'{value:.3g}' for value in place)}) m of scene.leader + offset at {time:.3g} s"
