@@ -308,10 +308,11 @@ def laws_in(place: str | Path, tell: Callable[[str], None] = lambda text: None) 
     They are the classes that declare a kind, and a plain holding law that is its module's only class: of several, any
     may be a helper, and ``tell`` is told. Raises InputError where there is none, or a module cannot be imported.
     """
-    alone = Path(place).expanduser().suffix == ".py" and Path(place).expanduser().is_file()
-    folder = importable(Path(place).expanduser().parent if alone else place, "laws")
+    path = Path(os.path.expanduser(place))  # as it is where nobody has that name, which ``importable`` says
+    alone = path.suffix == ".py" and path.is_file()
+    folder = importable(path.parent if alone else place, "laws")
     found: dict[str, type] = {}
-    for file in [Path(place).expanduser()] if alone else sorted(folder.glob("*.py")):
+    for file in [path] if alone else sorted(folder.glob("*.py")):
         if file.stem.startswith(("test_", "_", "conftest")):
             continue
         try:
