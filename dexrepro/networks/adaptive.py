@@ -23,16 +23,31 @@ class AdaptiveNetwork:
 
     def __init__(self, basis: Basis, outputs: int, *, gain: float | ArrayLike, leakage: float, step: float) -> None:
         self.basis, self.step, self.leakage = basis, step, leakage
-        self.gain = np.asarray(gain, dtype=float)
+        self.gain = gain
+        self._kept = np.asarray(1.0 - step * leakage)  # as an array, which is quicker to multiply by than a number
         self._weights = np.zeros((outputs, basis.capacity))  # one row an output: long rows, fast updates
-        self._change = np.empty_like(self._weights)
         self.features = np.empty(0)
-        self._used = self._weights[:, :0], self._change[:, :0]  # the parts that the present features need
+        self._use(0)
+
+    def _use(self, features: int) -> None:
+        """Put so many weights to use, in rows without gaps between them, which are quicker to update."""
+        self._used = np.ascontiguousarray(self._weights[:, :features])
+        self._change = np.empty_like(self._used)
+
+    @property
+    def gain(self) -> Array:
+        """Adaptation gain, () or (outputs,)."""
+        return self._gain
+
+    @gain.setter
+    def gain(self, gain: ArrayLike) -> None:
+        self._gain = np.asarray(gain, dtype=float)
+        self._rate = np.asarray(self.step * self._gain)
 
     @property
     def weights(self) -> Array:
         """W, shape (features at the last output, outputs); a view."""
-        return self._used[0].T
+        return self._used.T
 
     def reset(self, weights: ArrayLike | None = None) -> None:
         """Set the first rows of W to ``weights`` (n, outputs), n <= capacity, and all others to zero."""
@@ -40,6 +55,7 @@ class AdaptiveNetwork:
         if weights is not None:
             rows = np.asarray(weights, dtype=float)
             self._weights[:, : len(rows)] = rows.T
+        self._use(len(self.features))
 
     @property
     def nodes(self) -> int:
@@ -49,7 +65,11 @@ class AdaptiveNetwork:
     def diagnostics(self) -> Mapping[str, float]:
         """Nodes, |G|^2 and largest feature at the last input."""
         features = self.features
-        return {"nodes": self.nodes, "feature_energy": features @ features, "activation": features.max(initial=0.0)}
+        return {
+            "nodes": self.nodes,
+            "feature_energy": features.dot(features),
+            "activation": features[features.argmax()] if len(features) else 0.0,
+        }
 
     def forget(self) -> None:
         """Start anew: weights zero, and the nodes the basis had at first."""
@@ -59,15 +79,16 @@ class AdaptiveNetwork:
     def output(self, z: ArrayLike, grow: bool = False) -> Array:
         """Y(z), shape (outputs,); ``grow`` lets the basis add a node for ``z`` first."""
         self.features = features = self.basis(z, grow)
-        n = len(features)
-        if n != self._used[0].shape[1]:
-            self._used = self._weights[:, :n], self._change[:, :n]
-        return self._used[0] @ features
+        count = self._used.shape[1]
+        if len(features) != count:
+            self._weights[:, :count] = self._used
+            self._use(len(features))
+        return self._used.dot(features)
 
     def adapt(self, error: Array) -> None:
         """One step of the weight law, at the input of the last :meth:`output`; ``error`` e has shape (outputs,)."""
-        weights, change = self._used
+        weights, change = self._used, self._change
         if self.leakage:
-            weights *= 1.0 - self.step * self.leakage
-        np.multiply((self.step * self.gain * error)[:, None], self.features, out=change)
+            weights *= self._kept
+        np.multiply((self._rate * error)[:, None], self.features, out=change)
         weights += change

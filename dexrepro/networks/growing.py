@@ -43,11 +43,7 @@ class GrowingGaussians(Basis):
         self.features_per_node = 3 if enhanced else 1
         self.capacity = max_nodes * self.features_per_node
         self._centres = np.empty((max_nodes, dimension))
-        self._difference = np.empty((max_nodes, dimension))
-        self._squared = np.empty(max_nodes)
-        self._gaussian = np.empty(max_nodes)
-        self._features = np.empty((max_nodes, self.features_per_node))
-        self._scale = -1.0 / self.width**2
+        self._scale = np.asarray(-1.0 / self.width**2)  # as an array, which is quicker to multiply by than a number
         self.reset()
 
     def reset(self, centres: ArrayLike | None = None) -> None:
@@ -60,10 +56,10 @@ class GrowingGaussians(Basis):
         self._hold(len(known))
 
     def _hold(self, count: int) -> None:
-        """Have so many nodes: the parts of all arrays that are in use."""
-        self._count = count
-        self._used = self._centres[:count], self._difference[:count], self._squared[:count], self._gaussian[:count]
-        features = self._features[:count]
+        """Have so many nodes: the centres in use, and room for what is computed from them."""
+        self._count, self._used = count, self._centres[:count]
+        self._difference, self._squared = np.empty_like(self._used), np.empty(count)
+        features = np.empty((count, self.features_per_node))
         self._columns, self._flat = features.T, features.reshape(-1)
 
     @property
@@ -74,27 +70,29 @@ class GrowingGaussians(Basis):
     @property
     def centres(self) -> Array:
         """Centres of the present nodes, shape (nodes, dimension); a view."""
-        return self._used[0]
+        return self._used
 
     def __call__(self, z: ArrayLike, grow: bool = False) -> Array:
         """Features at ``z``, shape (nodes features_per_node,)."""
         if self._count == 0:
             self._append(np.asarray(z, dtype=float))
-        squared = squared_distances(self._used[0], z, self._used[1], self._used[2])
+        squared = self._distances(z)
         if grow:
             if self._calls % self.interval == 0 and self._grow(np.asarray(z, dtype=float), squared):
-                squared = squared_distances(self._used[0], z, self._used[1], self._used[2])
+                squared = self._distances(z)
             self._calls += 1
-        gaussian = self._used[3]
-        np.multiply(squared, self._scale, out=gaussian)
-        np.exp(gaussian, out=gaussian)
+        squared *= self._scale
         if not self.enhanced:
-            return gaussian
-        first, cosine, sine = self._columns
-        first[...] = gaussian
+            return np.exp(squared, out=squared)
+        gaussian, cosine, sine = self._columns
+        np.exp(squared, out=gaussian)
         np.cos(gaussian, out=cosine)
         np.sin(gaussian, out=sine)
         return self._flat
+
+    def _distances(self, z: ArrayLike) -> Array:
+        """|z - c_i|^2 of the present nodes, (nodes,)."""
+        return squared_distances(self._used, z, self._difference, self._squared)
 
     def _grow(self, z: Array, squared: Array) -> bool:
         if self._count == self.max_nodes:
