@@ -45,12 +45,12 @@ class Switch:
         scale = radius if self.node_scaled else 1.0
         inner, outer = self.inner * scale, self.outer * scale
         size = np.abs(z)
-        largest = size.max()
+        largest = max(size.tolist())
         if largest < inner:
             return 1.0
         if largest > outer:
             return 0.0
-        return float(np.prod(self.component(np.where(size < inner, inner, size), inner, outer)))
+        return float(np.prod(self.component(size[size > inner], inner, outer)))
 
     def component(self, size: ArrayLike, inner: float, outer: float) -> Array:
         """e of one component's magnitude between ``inner`` and ``outer``."""
@@ -59,16 +59,15 @@ class Switch:
         return (1.0 - share) * np.exp(power)
 
 
-@dataclass(frozen=True)
 class RobustTerm:
     """Upsilon_b = y tanh(y z_2 / width), Eq. (4.29): bounded by y [N m] a joint; width: omega-bar [N m rad/s]."""
 
-    bound: ArrayLike
-    width: ArrayLike
+    def __init__(self, bound: ArrayLike, width: ArrayLike) -> None:
+        self.bound, self.width = np.asarray(bound, dtype=float), np.asarray(width, dtype=float)
 
     def __call__(self, velocity_error: Array) -> Array:
-        bound = np.asarray(self.bound, dtype=float)
-        return bound * np.tanh(bound * velocity_error / np.asarray(self.width, dtype=float))
+        term: Array = self.bound * np.tanh(self.bound * velocity_error / self.width)
+        return term
 
 
 class GlobalAdaptiveControl:
@@ -132,17 +131,17 @@ class GlobalAdaptiveControl:
         self.velocity_error = dq - alpha
         parts = (q, alpha_rate) if self.reduced_input else (q, dq, alpha, alpha_rate)
         self.input = np.concatenate(parts)
-        self.share = 1.0 if self.switch is None else self.switch(self.input, self._radius())
+        self.share = share = 1.0 if self.switch is None else self.switch(self.input, self._radius())
         torque = self.velocity_gain * alpha
         self.usage = self.bound.usage(self.error, nu)
         if self.barrier:
-            torque = torque - jacobian.T @ self.bound.barrier_gradient(self.error, nu)
+            torque -= self.bound.barrier_gradient(self.error, nu).dot(jacobian)
         if self.network is not None:
-            torque = torque - self.share * self.network.output(self.input, grow=self.learning)
+            torque -= share * self.network.output(self.input, grow=self.learning)
             if self.learning:
-                self.network.adapt(self.share * self.velocity_error)
-        if self.robust is not None and self.share < 1.0:
-            torque = torque - (1.0 - self.share) * self.robust(self.velocity_error)
+                self.network.adapt(share * self.velocity_error)
+        if self.robust is not None and share < 1.0:
+            torque -= (1.0 - share) * self.robust(self.velocity_error)
         return Command(torque, self.velocity_gain)
 
     def _virtual_velocity(
@@ -153,16 +152,16 @@ class GlobalAdaptiveControl:
         decay = math.sqrt(2.0 * ratio**2 + self.floor)  # l(t)
         feedback = self.position_gain + decay
         u = velocity - feedback * self.error
-        error_rate = jacobian @ dq - velocity
+        error_rate = jacobian.dot(dq) - velocity
         u_rate = acceleration - feedback * error_rate - (2.0 * ratio * ratio_rate / decay) * self.error
         jacobian_rate = (self.model.jacobian(q + 1e-7 * dq)[: len(jacobian)] - jacobian) * 1e7
         inverse = _right_inverse(jacobian)
-        alpha = inverse @ u
-        u_rate -= jacobian_rate @ alpha
+        alpha = inverse.dot(u)
+        u_rate -= jacobian_rate.dot(alpha)
         if len(jacobian) == len(q):
-            return alpha, inverse @ u_rate
-        drift = jacobian_rate.T @ (inverse.T @ alpha)  # of the row space of J
-        return alpha, drift + inverse @ (u_rate - jacobian @ drift)
+            return alpha, inverse.dot(u_rate)
+        drift = alpha.dot(inverse).dot(jacobian_rate)  # of the row space of J
+        return alpha, drift + inverse.dot(u_rate - jacobian.dot(drift))
 
     def _radius(self) -> float:
         if self.switch is None or not self.switch.node_scaled or self.network is None:
@@ -176,7 +175,7 @@ def _right_inverse(jacobian: Array) -> Array:
     rows, columns = jacobian.shape
     if rows == columns:
         return dgesv(jacobian, _identity(rows))[2]
-    return jacobian.T @ dgesv(jacobian @ jacobian.T, _identity(rows))[2]
+    return jacobian.T.dot(dgesv(jacobian.dot(jacobian.T), _identity(rows))[2])
 
 
 @cache

@@ -46,12 +46,15 @@ class PerformanceBound:
         """chi (d,), the share of the bound that ``error`` (d,) uses, with its sign; the bound holds while |chi| < 1."""
         return error / self.limit(error, nu)
 
-    def barrier_gradient(self, error: Array, nu: float | Array, clip: float = 0.995) -> Array:
-        """P, the gradient of the barrier function sum of 1/2 ln 1/(1 - chi^2), Eqs. (4.17), (4.19).
+    def barrier_gradient(self, error: Array, nu: float, clip: float = 0.995) -> Array:
+        """P (d,), the gradient of the barrier function sum of 1/2 ln 1/(1 - chi^2), Eqs. (4.17), (4.19).
 
         The book's chi^2 / ((1 - chi^2) error) without its 0/0 at zero error. |chi| is taken as ``clip`` at most, so
         that a sample outside the bound is pushed back with a large, finite force.
         """
-        limit = self.limit(error, nu)
-        chi = np.minimum(np.maximum(error / limit, -clip), clip)
+        return np.array([self._slope(component, nu, clip) for component in error.tolist()])
+
+    def _slope(self, error: float, nu: float, clip: float) -> float:
+        limit = (self.upper if error >= 0 else self.lower) * nu
+        chi = min(max(error / limit, -clip), clip)
         return chi / (limit * (1.0 - chi * chi))

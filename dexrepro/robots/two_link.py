@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import accumulate
 
 import numpy as np
 
@@ -21,7 +22,7 @@ class TwoLink:
 
     def position(self, q: Array) -> Array:
         """Tip (x, y) [m]."""
-        a, b = q[0], q[0] + q[1]
+        a, b = accumulate(q.tolist())
         return np.array(
             [
                 self._first * math.cos(a) + self._second * math.cos(b),
@@ -31,7 +32,7 @@ class TwoLink:
 
     def jacobian(self, q: Array) -> Array:
         """Tip velocity per joint rate, shape (2, 2) [m/rad]."""
-        a, b = q[0], q[0] + q[1]
+        a, b = accumulate(q.tolist())
         x, y = self._second * math.cos(b), self._second * math.sin(b)
         return np.array([[-self._first * math.sin(a) - y, -y], [self._first * math.cos(a) + x, x]])
 

@@ -35,8 +35,9 @@ def test_barrier_gradient_is_the_derivative_of_the_barrier_function(share, t):
 
     h = 1e-7 * nu
     expected = (barrier(error + h) - barrier(error - h)) / (2 * h)
-    assert BOUND.barrier_gradient(error, nu) == pytest.approx(expected, rel=1e-4, abs=1e-4 / nu)
-    assert BOUND.barrier_gradient(error, nu) * error >= 0
+    gradient = BOUND.barrier_gradient(np.array([error]), nu)
+    assert gradient == pytest.approx([expected], rel=1e-4, abs=1e-4 / nu)
+    assert gradient * error >= 0
 
 
 def test_barrier_gradient_is_odd_for_equal_bounds_and_finite_outside():

@@ -70,10 +70,10 @@ class Pilot:
     def __call__(self, sense: Sense) -> Command:
         return self.command(sense)
 
-    def state(self) -> list[float]:
+    def state(self) -> tuple[float, ...]:
         """Error (3), usage (3), E, nodes, largest feature, for the columns of ``STATE``."""
         told = {**UNTOLD, **report(self.law)}
-        return [*self.drive.error, *told["usage"], told["share"], told["nodes"], told["activation"]]
+        return (*self.drive.error.tolist(), *told["usage"], told["share"], told["nodes"], told["activation"])
 
 
 #: What a law is taken to report where it reports nothing.

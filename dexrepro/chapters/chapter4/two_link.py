@@ -95,13 +95,13 @@ class Pilot:
         """W-bar, the mean over the last reference period at the final number of nodes (4.31)."""
         return self._sum / self._samples
 
-    def state(self) -> list[float]:
+    def state(self) -> tuple[float, ...]:
         """Error (2), usage (2), E, nodes, |G|^2, |Xi|, largest |Xi_k|, alpha' (2): the columns of ``STATE``."""
         told = {**UNTOLD, **report(self.law)}
         z = told["input"].tolist()
         norm, peak = math.hypot(*z), max(map(abs, z))
-        return [*self.drive.error, *told["usage"], told["share"], told["nodes"], told["feature_energy"], norm, peak,
-                *z[6:]]  # fmt: skip
+        return (*self.drive.error.tolist(), *told["usage"], told["share"], told["nodes"], told["feature_energy"], norm,
+                peak, *z[6:])  # fmt: skip
 
 
 #: What a law is taken to report where it reports nothing.
