@@ -12,8 +12,8 @@ class MomentumObserver:
     """Observed external torque sigma = K (p - p(0) - integral), Eqs. (3.17), (3.18).
 
     With an exact model d sigma/dt = K (tau_ext - sigma), Eq. (3.19): a lag of 1 / K. The momentum p = M dq, Eq. (3.13),
-    changes by (tau + tau_ext - C dq - G) dt and by dM dq; both are summed as the steps of the plant make them, so that
-    without an external torque sigma stays zero for any motion.
+    changes by (tau + tau_ext - C dq - G) dt and by dM dq, Eq. (3.14); both are summed as the steps of the plant make
+    them, so that without an external torque sigma stays zero for any motion.
 
     gain: K [1/s], a number or one a joint, below 2 / dt for stability; dt: period [s].
     """

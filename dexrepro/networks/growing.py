@@ -19,8 +19,9 @@ class GrowingGaussians(Basis):
 
     width, threshold: in the unit of the input. placement: a number or one a dimension (1: the node sits at the input).
     interval: growth is considered at every ``interval``-th call that asks for it (the book's T over the control
-    period). enhanced: beside s_i each node has the features cos(s_i) and sin(s_i), Eq. (4.8); features are ordered
-    node by node, so that growth appends. max_nodes: memory is reserved for as many; once full, no node is added.
+    period). enhanced: beside s_i each node has the features cos(s_i) and sin(s_i), Eq. (4.8). Of the features [F | H]
+    of (4.3), (8.16) those of one node stand together, so that growth appends, Eq. (8.17). max_nodes: memory is reserved
+    for as many; once full, no node is added.
     """
 
     grows: ClassVar[bool] = True
