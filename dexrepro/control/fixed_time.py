@@ -53,7 +53,7 @@ class FixedTimeBackstepping:
         network: Network | None = None,
         printed: bool = False,
     ) -> None:
-        self.first, self.second, self.powers = tuple(first), tuple(second), tuple(powers)
+        self.first, self.second, self.powers = (tuple(map(float, gains)) for gains in (first, second, powers))
         self.dt, self.network, self._share = dt, network, (0.5 if printed else 1.0)
         self._smoothing = (dt / smoothing) / (1.0 + dt / smoothing)
         self._forget()

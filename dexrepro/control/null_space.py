@@ -15,10 +15,12 @@ def consistent_inverse(mass: Array, jacobian: Array, damping: float = 1e-6) -> t
     mass: (n, n), positive definite [kg m^2]; jacobian: (m, n).
     """
     weighted = dposv(mass, jacobian.T)[1]
-    square = jacobian @ weighted
-    square.flat[:: len(square) + 1] += damping
+    square = jacobian.dot(weighted)
+    square.reshape(-1)[:: len(square) + 1] += damping
     inverse = dposv(square, weighted.T)[1].T
-    return inverse, np.eye(len(mass)) - jacobian.T @ inverse.T
+    projector = -jacobian.T.dot(inverse.T)
+    projector.reshape(-1)[:: len(mass) + 1] += 1.0
+    return inverse, projector
 
 
 def consistent_damping(damping: Array, jacobian: Array, inverse: Array, projector: Array) -> Array:
@@ -34,6 +36,6 @@ def consistent_damping(damping: Array, jacobian: Array, inverse: Array, projecto
 def damped_inverse(jacobian: Array, damping: float) -> Array:
     """J^T (J J^T + damping I)^-1, shape (n, m)."""
     square = jacobian @ jacobian.T
-    square.flat[:: len(square) + 1] += damping
+    square.reshape(-1)[:: len(square) + 1] += damping
     result: Array = dposv(square, jacobian)[1].T
     return result

@@ -15,14 +15,16 @@ from dexrepro.robots.rotations import rotation_matrix, tilt
 def closest_point(centre: Array, corners: Sequence[Array]) -> tuple[int, Array]:
     """Segment, counted from 0, and its point (3,) [m] that is nearest to the centre, over a line through corners."""
     best, found = math.inf, (0, corners[0])
-    for index, (start, end) in enumerate(pairwise(corners)):
-        along = end - start
-        share = float((centre - start) @ along) / float(along @ along)
-        point = start + min(max(share, 0.0), 1.0) * along
-        gap = centre - point
-        square = float(gap @ gap)
-        if square < best:
-            best, found = square, (index, point)
+    cx, cy, cz = centre.tolist()
+    for index, (start, end) in enumerate(pairwise([corner.tolist() for corner in corners])):
+        (sx, sy, sz), (ex, ey, ez) = start, end
+        ax, ay, az = ex - sx, ey - sy, ez - sz
+        share = ((cx - sx) * ax + (cy - sy) * ay + (cz - sz) * az) / (ax * ax + ay * ay + az * az)
+        share = min(max(share, 0.0), 1.0)
+        point = sx + share * ax, sy + share * ay, sz + share * az
+        gap = math.dist((cx, cy, cz), point)
+        if gap < best:
+            best, found = gap, (index, np.array(point))
     return found
 
 
@@ -64,9 +66,9 @@ def tool_axis(reference: Array, centre: Array, target: Array, lever: float) -> A
     more than ``lever`` [m] beyond the centre towards the target.
     """
     final = target - centre
-    final = final / math.sqrt(float(final @ final))
+    final = final / math.sqrt(final.dot(final))
     offset = reference - centre
-    if float(offset @ final) <= lever:
+    if offset.dot(final) <= lever:
         return final
-    result: Array = offset / math.sqrt(float(offset @ offset))
+    result: Array = offset / math.sqrt(offset.dot(offset))
     return result

@@ -130,9 +130,10 @@ class TimeDelayImpedance:
             delayed, old_velocity, old_mass, old_bias = self._previous
             acceleration = (velocity - old_velocity) / self.dt
             torque += self._estimate_sign * (delayed - old_mass @ acceleration - old_bias)
-        free = abs(torque) < self.torque_limit
-        self._integral = self._integral + self.integral_rate * self.dt * restoring * free
-        torque = np.clip(torque, -self.torque_limit, self.torque_limit)
+        if self.integral_rate:
+            free = abs(torque) < self.torque_limit
+            self._integral = self._integral + self.integral_rate * self.dt * restoring * free
+        torque = np.minimum(np.maximum(torque, -self.torque_limit), self.torque_limit)
         delayed = self._previous[0] if self._previous else torque
         delayed = delayed + self.velocity_filter * (torque - delayed)
         self._previous = (delayed, velocity, mass, bias)
@@ -170,7 +171,7 @@ class GravityImpedance:
         self.error = r = desired.velocity - measured.velocity + self.error_slope * (desired.position - q)
         self.gain = self.impedance(self.stiffness(measured.time), r)
         torque = self.model.gravity(q) + self.gain * r
-        return Command(np.clip(torque, -self.torque_limit, self.torque_limit))
+        return Command(np.minimum(np.maximum(torque, -self.torque_limit), self.torque_limit))
 
 
 def sampled_spectral_radius(mass: ArrayLike, nominal_mass: ArrayLike, impedance: ArrayLike, dt: float) -> float:

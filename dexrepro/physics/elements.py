@@ -33,7 +33,10 @@ class Ends(Protocol):
 
 
 class Element(Protocol):
-    """Anything that exerts forces; ``channels`` are recorded as ``<name>.<channel>``."""
+    """Anything that exerts forces; ``channels`` are recorded as ``<name>.<channel>``.
+
+    One that is ``blind`` looks at joints alone, so that for its sake no end point need be located; may be absent.
+    """
 
     name: str
 
@@ -197,6 +200,8 @@ class JointLoad:
 
     angles and rates are lists of n floats [rad, rad/s]; the law works on them at every physics step.
     """
+
+    blind = True
 
     def __init__(self, arm: str, law: Load) -> None:
         self.name, self._arm, self._law = "load", arm, law

@@ -59,7 +59,7 @@ class Recorder:
 
     def write(self, row: list[float]) -> None:
         """Append one row; all rows of a recorder are of one length."""
-        self._numbers.extend(row)
+        self._numbers.fromlist(row)
         self._rows += 1
 
     def series(self, channels: Sequence[tuple[str, int]]) -> dict[str, Array]:
@@ -90,9 +90,9 @@ class Probes:
             if isinstance(value, (float, int)):
                 row.append(value)
             elif isinstance(value, tuple):
-                row.extend(value)
+                row += value
             else:
-                row.extend(np.ravel(value).tolist())
+                row += np.asarray(value).ravel().tolist()
         return row
 
 
@@ -188,6 +188,7 @@ class _Scene:
         self._bodies = list(world.moving.values())
         self._elements = list(world.elements)
         self._forces = [element.bind(world) for element in self._elements]
+        self._seen = [] if all(getattr(element, "blind", False) for element in self._elements) else self._arms
         self._probes, self._recorder = Probes(probes), Recorder()
 
     def read(self, now: float) -> str:
@@ -203,11 +204,10 @@ class _Scene:
 
     def act(self, now: float, sample: bool) -> None:
         """Evaluate force elements, then controllers; between control instants only their inner loops and damping."""
-        if self._forces:
-            for arm in self._arms:
-                arm.locate()
-            for apply in self._forces:
-                apply(now)
+        for arm in self._seen:
+            arm.locate()
+        for apply in self._forces:
+            apply(now)
         for arm, controller in self._driven:
             try:
                 if sample:
@@ -218,8 +218,8 @@ class _Scene:
                     answer = self._commands[arm.name]
                     if callable(answer):
                         answer = answer(arm.observe(now, False))
-                    elif not isinstance(answer, tuple):
-                        continue
+                    elif not isinstance(answer, tuple) or answer[1] is None:
+                        continue  # the torque of the control instant still holds
                 if isinstance(answer, tuple):
                     arm.command(answer[0], answer[1], self._step)
                 else:

@@ -12,6 +12,7 @@ from operator import add
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg.lapack import dgesv
 
 from dexrepro.arrays import Array
 from dexrepro.control.contract import Command, Undefined, Unusable
@@ -291,17 +292,20 @@ class SimulatedArm(Point, ABC):
         - bias - D dq, and the torque to apply is torque - D (dq + h a). D is a vector (diagonal) or a matrix.
         """
         damping = np.asarray(damping, dtype=float)
-        multiply = np.multiply if damping.ndim == 1 else np.matmul
+        brake = damping.__mul__ if damping.ndim == 1 else damping.dot
         rate = np.array(self.dq)
         mass, bias = self._dynamics()
-        rest = torque + self.load - bias - multiply(damping, rate)
+        rest = torque - bias - brake(rate) if self.load is self._zeros else torque + self.load - bias - brake(rate)
         if self._planar is None and (self.fx or self.fy or self.fz):
             rest += self._felt_torque()
         if damping.ndim == 1:
-            mass.flat[:: self.dof + 1] += step * damping
+            mass.reshape(-1)[:: self.dof + 1] += step * damping
         else:
             mass += step * damping
-        return torque - multiply(damping, rate + step * np.linalg.solve(mass, rest))
+        _, _, acceleration, singular = dgesv(mass, rest)  # np.linalg.solve takes four times as long
+        if singular:
+            raise np.linalg.LinAlgError("the mass matrix with its damping is singular")
+        return torque - brake(rate + step * acceleration)
 
     def push_unsensed(self, fx: float, fy: float, fz: float) -> None:
         """Add a force on the end point [N] that the force sensor does not see."""

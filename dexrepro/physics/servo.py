@@ -25,25 +25,23 @@ class JointServo:
     """
 
     def __init__(self, model: RigidBodyModel, bandwidth: float) -> None:
-        self.law = ComputedTorque(model=model, frequency=bandwidth)
+        self.law, self.still = ComputedTorque(model=model, frequency=bandwidth), np.zeros(model.dof)
 
     def reset(self, position: ArrayLike) -> None:
         """Take the joint angles (n,) [rad] as reference, at rest."""
-        self.start = np.array(position, float)
-        self.rate = self.compensation = np.zeros(len(self.start))
-        self.since = 0.0
+        self.start, self.since = np.array(position, float), 0.0
+        self.rate = self.compensation = self.force = self.still
 
     def refer(self, time: float, position: Array, rate: Array, compensation: Array | None = None) -> None:
         """From ``time`` [s] on: reference angles ``position`` moving at ``rate`` [rad/s], and torque -J^T F [N m]."""
         self.since, self.start, self.rate = time, position, rate
-        self.compensation = np.zeros(len(rate)) if compensation is None else compensation
+        self.compensation = self.still if compensation is None else compensation
+        self.force = -self.compensation
 
     def __call__(self, sense: Sense) -> Array:
         reference = self.start + (sense.time - self.since) * self.rate
-        measured = Measured(sense.time, sense.position, sense.velocity, -self.compensation)
-        torque = self.law(measured, Motion(reference, self.rate, np.zeros(len(reference)))).torque
-        assert torque is not None
-        return torque + self.compensation
+        measured = Measured(sense.time, sense.position, sense.velocity, self.force)
+        return self.law(measured, Motion(reference, self.rate, self.still)).torque + self.compensation
 
 
 class PoseServo:

@@ -78,7 +78,7 @@ class SoftObject:
             nx, ny, nz = b.x - a.x, b.y - a.y, b.z - a.z
             distance = math.sqrt(nx * nx + ny * ny + nz * nz) or 1e-12
             line = nx / distance, ny / distance, nz / distance
-            along = sum(n * (c - p) for n, c, p in zip(line, (body.x, body.y, body.z), (a.x, a.y, a.z)))
+            along = line[0] * (body.x - a.x) + line[1] * (body.y - a.y) + line[2] * (body.z - a.z)
             scale, half = self.scale(time), 0.5 * self.length
             for side, gap in enumerate((along, distance - along)):
                 force = float(self.cushions[side].force(half - gap, scale))
@@ -86,12 +86,11 @@ class SoftObject:
                 if force == 0.0:
                     anchors[side] = None
                     continue
-                inward = line if side == 0 else (-line[0], -line[1], -line[2])
-                drag, anchors[side] = self._stick(ends[side], body, line, force, anchors[side])
-                fx, fy, fz = (force * n + d for n, d in zip(inward, drag))
-                ends[side].push(-fx, -fy, -fz)
-                place = ends[side].x, ends[side].y, ends[side].z
-                body.push_at((fx, fy, fz), place)
+                end, inward = ends[side], (-force if side else force)
+                (dx, dy, dz), anchors[side] = self._stick(end, body, line, force, anchors[side])
+                fx, fy, fz = inward * line[0] + dx, inward * line[1] + dy, inward * line[2] + dz
+                end.push(-fx, -fy, -fz)
+                body.push_at((fx, fy, fz), (end.x, end.y, end.z))
 
         return apply
 
@@ -113,17 +112,17 @@ class SoftObject:
             ),
             line,
         )
-        pull = tuple(self.shear * u + self.shear_damping * v for u, v in zip(offset, rate))
-        size, limit = math.sqrt(sum(p * p for p in pull)), self.friction * normal
+        k, d = self.shear, self.shear_damping
+        px, py, pz = k * offset[0] + d * rate[0], k * offset[1] + d * rate[1], k * offset[2] + d * rate[2]
+        size, limit = math.sqrt(px * px + py * py + pz * pz), self.friction * normal
         if size <= limit:
-            return pull, anchor  # type: ignore[return-value]
+            return (px, py, pz), anchor
         share = limit / size
-        pull = tuple(share * p for p in pull)
+        px, py, pz = share * px, share * py, share * pz
         # The anchor follows until the elastic part alone gives the largest friction.
-        moved = tuple(u - p / self.shear for u, p in zip(offset, pull))
-        self.slip += math.sqrt(sum(m * m for m in moved))
-        back = rotated(_inverse(body.orientation), (ax + moved[0], ay + moved[1], az + moved[2]))
-        return pull, back  # type: ignore[return-value]
+        mx, my, mz = offset[0] - px / k, offset[1] - py / k, offset[2] - pz / k
+        self.slip += math.sqrt(mx * mx + my * my + mz * mz)
+        return (px, py, pz), rotated(_inverse(body.orientation), (ax + mx, ay + my, az + mz))
 
     def channels(self) -> dict[str, float]:
         return {f"force_{arm}": force for arm, force in zip(self.arms, self.forces)} | {"slip": self.slip}

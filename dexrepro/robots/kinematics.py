@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -13,12 +15,14 @@ def joint_frames(arm: Arm, position: ArrayLike) -> Array:
     """World transforms of all moving links, shape (..., n, 4, 4), for joint angles (..., n) [rad]."""
     q = np.asarray(position, dtype=float)[..., None, None]
     origins, cross, square = arm.turns
-    # Rodrigues' formula for all joints at once.
-    local = origins + np.sin(q) * cross + (1.0 - np.cos(q)) * square
-    frames = np.empty_like(local)
-    frames[..., 0, :, :] = local[..., 0, :, :]
-    for i in range(1, arm.dof):
-        np.matmul(frames[..., i - 1, :, :], local[..., i, :, :], out=frames[..., i, :, :])
+    # Rodrigues' formula for all joints at once; then each frame is put behind the one before it.
+    frames: Array = origins + np.sin(q) * cross + (1.0 - np.cos(q)) * square
+    if frames.ndim == 3:
+        for before, frame in pairwise(frames):
+            frame[...] = before.dot(frame)
+    else:
+        for i in range(1, arm.dof):
+            frames[..., i, :, :] = frames[..., i - 1, :, :] @ frames[..., i, :, :]
     return frames
 
 

@@ -85,8 +85,7 @@ class PlanarTip:
         angles = list(accumulate(map(add, self._turns, q)))
         x = y = 0.0
         result = []
-        for a, b in self._sides:  # from the tip to the base
-            angle = angles.pop()
+        for (a, b), angle in zip(self._sides, reversed(angles)):  # from the tip to the base
             c, s = cos(angle), sin(angle)
             x += c * a - s * b
             y += s * a + c * b

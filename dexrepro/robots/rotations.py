@@ -30,21 +30,25 @@ def tilt(axis: Array, actual: Array) -> Array:
 
     Aligned vectors give zero, exactly opposed ones half a turn about any axis across.
     """
-    across = cross(axis, actual)
-    sine, cosine = math.sqrt(float(across @ across)), float(axis @ actual)
+    (a, b, c), (u, v, w) = axis.tolist(), actual.tolist()
+    x, y, z = b * w - c * v, c * u - a * w, a * v - b * u
+    sine, cosine = math.sqrt(x * x + y * y + z * z), a * u + b * v + c * w
     if sine < 1e-12:
         return np.zeros(3) if cosine > 0 else math.pi * perpendicular(actual)
-    return across * (math.atan2(sine, cosine) / sine)
+    scale = math.atan2(sine, cosine) / sine
+    return np.array((scale * x, scale * y, scale * z))
 
 
 def rotation_matrix(vector: Array) -> Array:
     """Rotation (3, 3) of a rotation vector (3,) [rad], Eqs. (3.21), (3.22) corrected."""
-    angle = math.sqrt(float(vector @ vector))
+    x, y, z = vector.tolist()
+    angle = math.sqrt(x * x + y * y + z * z)
     if angle < 1e-15:
         return np.eye(3)
-    x, y, z = (vector / angle).tolist()
+    x, y, z = x / angle, y / angle, z / angle
     skew = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
-    result: Array = np.eye(3) + math.sin(angle) * skew + 2.0 * math.sin(angle / 2) ** 2 * (skew @ skew)
+    result: Array = math.sin(angle) * skew + 2.0 * math.sin(angle / 2) ** 2 * skew.dot(skew)
+    result.reshape(-1)[::4] += 1.0
     return result
 
 

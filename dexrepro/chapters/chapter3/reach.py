@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -71,21 +73,20 @@ class State:
 
     def __init__(self, arm: Arm, q: Array) -> None:
         frames = joint_frames(arm, q)
-        tip = frames[-1] @ arm.tip
+        tip = frames[-1].dot(arm.tip)
         self.tip, self.rotation = tip[:3, 3], tip[:3, :3]
-        self.origins = frames[:, :3, 3]
         self.axes = frames[:, :3, 2]  # every joint of the arm turns about the z axis of its link
-        self.corners = (self.origins[ELBOW], self.origins[WRIST], self.tip)
+        self.corners = (frames[ELBOW, :3, 3], frames[WRIST, :3, 3], self.tip)
+        self._screws = list(zip(self.axes.tolist(), frames[:, :3, 3].tolist()))
 
     def jacobian(self, point: Array, joints: int) -> Array:
-        """Linear Jacobian (3, n) of a point that the first ``joints`` joints move."""
-        result = np.zeros((3, len(self.axes)))
-        levers = point - self.origins[:joints]
-        x, y, z = self.axes[:joints].T
-        u, v, w = levers.T
-        result[0, :joints] = y * w - z * v
-        result[1, :joints] = z * u - x * w
-        result[2, :joints] = x * v - y * u
+        """Linear Jacobian (3, n), axis x (point - origin), of a point that the first ``joints`` joints move."""
+        result = np.zeros((3, len(self._screws)))
+        p, q, r = point.tolist()
+        result.T[:joints] = [  # plain floats: a third of the time that arrays of three take
+            (y * (r - w) - z * (q - v), z * (p - u) - x * (r - w), x * (q - v) - y * (p - u))
+            for (x, y, z), (u, v, w) in self._screws[:joints]
+        ]
         return result
 
 
@@ -101,10 +102,15 @@ class Reach:
     def __init__(self, config: Config, centre: Callable[[float], Array], applied: Callable[[], Any]) -> None:
         self.arm = gripper_arm(config.gripper)
         self.model = nominal_model(self.arm, config.model.mass_error)
-        self.config, self.law, self.observer = config, JointDrive(config.law), config.observer
+        # Attributes of a Config are looked up at twenty times the cost of a plain one.
+        self.config = SimpleNamespace(**config)
+        self.null_space = SimpleNamespace(**{"projected": True, "consistent_damping": False} | config.null_space)
+        self.law, self.observer = JointDrive(config.law), config.observer
+        self.support = config.model.gravity_compensation
         if config.adaptation == "task":  # what of e2 moves the task drives the weights
             config.law.part = self._moving
         self._centre, self._applied = centre, applied
+        self._plan = partial(Reference, config)
         self._reference: Reference | None = None
         self._joints: Array | None = None
         self._postures: tuple[Array, ...] = ()
@@ -112,12 +118,12 @@ class Reach:
         self.observed = np.zeros(7)
 
     def __call__(self, sense: Sense) -> Command:
-        config, q, dq = self.config, sense.position, sense.velocity
+        config, null_space, q, dq = self.config, self.null_space, sense.position, sense.velocity
         centre, state = self._centre(sense.time), State(self.arm, q)
         mass, bias, gravity = self.model.mass_matrix(q), self.model.bias(q, dq), self.model.gravity(q)
         self.observed = self.observer(mass, dq, bias, np.array(self._applied()))
         if self._reference is None:
-            self._reference = Reference(config, state.tip, state.rotation[:, 2], centre)
+            self._reference = self._plan(state.tip, state.rotation[:, 2], centre)
         wanted = self._reference(sense.time, centre)
         self.tracking = math.dist(state.tip, wanted[0])
         error, jacobian, rate = self._task(state, wanted)
@@ -132,11 +138,11 @@ class Reach:
             joints, joint_rate = q - back @ error, back @ rate
         desired = Motion(joints, joint_rate, np.zeros(len(q)))
         torque, damping, _ = self.law.command(Measured(sense.time, q, dq, self.observed), desired)
-        torque = torque + config.model.gravity_compensation * gravity
-        if config.null_space.enabled:
+        torque = torque + self.support * gravity
+        if null_space.enabled:
             subtask = self._subtask(state, centre)
-            torque += projector @ subtask if config.null_space.get("projected", True) else subtask
-        if config.null_space.get("consistent_damping") and damping is not None:
+            torque += projector @ subtask if null_space.projected else subtask
+        if null_space.consistent_damping and damping is not None:
             damping = consistent_damping(damping, jacobian, self._inverse, projector)
         return Command(torque, damping)
 
@@ -203,7 +209,7 @@ class Reach:
 
     def _subtask(self, state: State, centre: Array) -> Array:
         """tau_sub (n,) [N m], Eq. (3.30): pull the nearest point of the arm to the centre, take out what pushes it."""
-        null = self.config.null_space
+        null = self.null_space
         segment, point = closest_point(centre, state.corners)
         joints = CARRIERS[segment]
         if null.printed:

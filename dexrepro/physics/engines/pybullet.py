@@ -98,9 +98,11 @@ class BulletArm(SimulatedArm):
 
     def _dynamics(self) -> tuple[Array, Array]:
         client, body, factor = self._twin
-        mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client)) / factor
+        mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client))
         bias = np.array(bullet.calculateInverseDynamics(body, self.q, self.dq, self._zeros, physicsClientId=client))
-        bias /= factor
+        if factor < 1:
+            mass /= factor
+            bias /= factor
         return mass, bias
 
     def _felt_torque(self) -> Array:
@@ -315,25 +317,25 @@ class BulletModel(RigidBodyModel):
         self._close()
 
     def mass_matrix(self, q: Array) -> Array:
-        return np.array(bullet.calculateMassMatrix(self._body, _list(q), physicsClientId=self._client)) / self._factor
+        return self._scaled(bullet.calculateMassMatrix(self._body, _list(q), physicsClientId=self._client))
 
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array) -> Array:
         torque = bullet.calculateInverseDynamics(
             self._body, _list(q), _list(dq), _list(ddq), physicsClientId=self._client
         )
-        return np.array(torque) / self._factor
+        return self._scaled(torque)
 
     def bias(self, q: Array, dq: Array) -> Array:
         torque = bullet.calculateInverseDynamics(
             self._body, _list(q), _list(dq), self._zeros, physicsClientId=self._client
         )
-        return np.array(torque) / self._factor
+        return self._scaled(torque)
 
     def gravity(self, q: Array) -> Array:
         torque = bullet.calculateInverseDynamics(
             self._body, _list(q), self._zeros, self._zeros, physicsClientId=self._client
         )
-        return np.array(torque) / self._factor
+        return self._scaled(torque)
 
     def jacobian(self, q: Array) -> Array:
         linear, angular = bullet.calculateJacobian(
@@ -362,6 +364,10 @@ class BulletModel(RigidBodyModel):
         rotation = np.array(bullet.getMatrixFromQuaternion(state[1])).reshape(3, 3)
         (x, y, z), (a, b, c) = state[0], rotated(state[1], self._end.from_com)
         return np.array((x + a, y + b, z + c)), rotation @ self._end.rotation
+
+    def _scaled(self, numbers: Sequence[float] | Sequence[Sequence[float]]) -> Array:
+        """What the engine says of the arm that it holds, for the arm as heavy as it is."""
+        return np.array(numbers) / self._factor if self._factor < 1 else np.array(numbers)
 
 
 def _list(values: Array) -> list[float]:

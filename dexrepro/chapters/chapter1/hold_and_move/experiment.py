@@ -123,9 +123,10 @@ def _fill(world: World, config: Config, rng: Rng) -> None:
     parts = {key: o[key] for key in ("fast", "slow", "fast_time", "slow_time")}
     left, right = (Cushion(o.stiffness, config.step, **parts) for _ in range(2))
     phase = rng("stiffness phase").uniform(0, 2 * np.pi)
+    swing, period = o.modulation, o.modulation_period
 
     def scale(time: float) -> float:
-        return 1.0 + o.modulation * math.sin(2 * math.pi * time / o.modulation_period + phase)
+        return 1.0 + swing * math.sin(2 * math.pi * time / period + phase)
 
     world.add(
         SoftObject("grip", "object", ("leader", "follower"), (left, right), length=o.length, friction=o.friction,
