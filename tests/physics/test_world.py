@@ -306,6 +306,18 @@ def test_held_torque_changes_at_control_instants_alone():
     np.testing.assert_allclose(run["arm.torque"][:, 0], np.repeat(np.arange(10) * 1e-3, 4), atol=1e-12)
 
 
+@pytest.mark.parametrize(("element", "times"), [(JointLoad("arm", joint_friction(0.1, 0.02)), 5), (None, 5),
+                                               (TipForce("field", "arm", lambda t, x, v: FLAT), 20)])  # fmt: skip
+def test_an_end_point_is_located_only_where_it_is_recorded_or_a_force_looks_at_it(element, times, monkeypatch):
+    with World() as world:
+        plant, found = world.add_arm("arm", planar(*BOOK), FOLLOWER), []
+        levers = plant._planar.levers
+        monkeypatch.setattr(plant._planar, "levers", lambda q: found.append(q) or levers(q))
+        world.add(*[element] if element else [])
+        world.run(0.02, {"arm": idle(plant)}, record_every=4)
+    assert len(found) == times
+
+
 @pytest.mark.parametrize("period", [None, 5e-3])
 def test_damping_acts_at_every_step_whatever_the_control_period(period):
     arm, damping, step = planar([0.5], [1.0]), 30.0, 1e-3
