@@ -61,6 +61,7 @@ def faults(source: str, known: set[str]) -> list[str]:
             found.append(f"line {alias.lineno}: '{ast.unparse(alias)}' says Any")
     for name, node in public(tree.body):
         method = "." in name and (node.name in known or node.name.startswith("__"))
+        method |= any(ast.unparse(item).endswith(".setter") for item in node.decorator_list)  # as its property says
         if not method and not ast.get_docstring(node):
             found.append(f"line {node.lineno}: {name} has no docstring")
         if any(map(says_any, annotations(node))):

@@ -102,13 +102,20 @@ class HoldingLaw(Protocol):
         """Where the arm should be along the line of contact [m], once a control period."""
 
 
+class PlainLaw(Protocol):
+    """A holding law of the plain shape, see :func:`is_plain`."""
+
+    def reset(self, position: Real) -> None:
+        """Start anew at a displacement [m]."""
+
+    def __call__(self, position: Real, force: Real) -> Real:
+        """Where the arm should be [m] at a displacement [m] and a force [N]."""
+
+
 class Plain:
-    """A holding law of the plain shape, ``reset(position)`` and ``__call__(position, force)``, as one of the contract.
+    """A holding law of the plain shape as one of the contract."""
 
-    law: an object whose class :func:`is_plain`.
-    """
-
-    def __init__(self, law: Any) -> None:
+    def __init__(self, law: PlainLaw) -> None:
         self.law = law
 
     def reset(self, measured: Measured[Real]) -> None:
@@ -117,8 +124,7 @@ class Plain:
 
     def __call__(self, measured: Measured[Real]) -> Real:
         """Where the arm should be [m]."""
-        reference: Real = self.law(measured.position, measured.force)
-        return reference
+        return self.law(measured.position, measured.force)
 
     def diagnostics(self) -> Mapping[str, Real]:
         """Those of the law."""
@@ -206,7 +212,7 @@ def check(law: Law_, kind: Kind) -> Law_:
     if declared in KINDS:
         raise ValueError(f"law {_name(type(law))} is of kind '{declared}'; here a law of kind '{kind}' is wanted")
     if kind == "holding" and declared is None and is_plain(type(law)):
-        return cast(Law_, Plain(law))
+        return cast(Law_, Plain(cast(PlainLaw, law)))
     plain = "; or, without a kind, have reset(self, position) and __call__(self, position, force)"
     raise ValueError(
         f"{_name(type(law))} is no law: its class must declare kind = '{kind}' (kinds are {', '.join(KINDS)})"
