@@ -107,11 +107,15 @@ Drawings: TypeAlias = "dict[str, matplotlib.figure.Figure]"  # by the number of 
 class Figure:
     """What surrounds a figure: caption (what was simulated, what the book shows) and one-sentence alternative text.
 
-    ``{experiment.case.metric:.3g}`` in them is filled from the result, ``{experiment.key}`` from its configuration.
+    ``{.case.metric:.3g}`` in them is filled from the result, ``{.key}`` from its configuration.
     """
 
     caption: str
     alt: str = ""
+
+    def of(self, experiment: str) -> Figure:
+        """The same, such names under that of the experiment whose folder holds it."""
+        return Figure(*(text.replace("{.", f"{{{experiment}.") for text in (self.caption, self.alt)))
 
 
 @dataclass(frozen=True)
@@ -187,7 +191,7 @@ class Experiment:
 
     @property
     def figures(self) -> Mapping[str, Figure]:
-        return self._part("figures", "FIGURES", {})
+        return {name: figure.of(self.name) for name, figure in self._part("figures", "FIGURES", {}).items()}
 
     @property
     def tables(self) -> Mapping[str, str]:

@@ -15,7 +15,7 @@ from .experiment import MAPPINGS, boards
 
 FIGURES = {
     "1.15": Figure(
-        "(a) Hit points of thirteen synthetic operators on six boards; ten rings of {dartboard.ring:g} m. (b) Hand "
+        "(a) Hit points of thirteen synthetic operators on six boards; ten rings of {.ring:g} m. (b) Hand "
         "speed, scale and distance to the nearest centre of one operator. (c) Posture load of the forearm. The book "
         "shows photographs.",
         "Rings with the hits of two mappings on six boards, hand speed, scale and distance over time, and posture "

@@ -10,7 +10,7 @@ from dexrepro.report import style
 FIGURES = {
     "1.C": Figure(
         "AFR's contact force and phase (field or force law) while DFR touches a soft object lightly, simulated Baxter "
-        "arms; desired force {hand_over.desired_force:g} N, sensor noise {hand_over.sensor_noise:g} N. The book does "
+        "arms; desired force {.desired_force:g} N, sensor noise {.sensor_noise:g} N. The book does "
         "not show the switch.",
         "Contact force and phase over time, with a latch and with a bare comparison.",
     )

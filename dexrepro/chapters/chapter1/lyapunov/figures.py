@@ -7,9 +7,9 @@ from dexrepro.report import style
 
 FIGURES = {
     "1.D": Figure(
-        "Left: V of Eq. (1.34) on the ramp of case 1, steps of {lyapunov.step:g} s, for the law that knows z_d, the "
+        "Left: V of Eq. (1.34) on the ramp of case 1, steps of {.step:g} s, for the law that knows z_d, the "
         "law that can be built and the printed definition of e_f. Right: how the force error develops over "
-        "{lyapunov.long:g} s for estimator gains L around the bound of Routh's condition. Neither is in the book.",
+        "{.long:g} s for estimator gains L around the bound of Routh's condition. Neither is in the book.",
         "V over time for three forms of the law, and force errors over time for several gains L.",
     )
 }

@@ -19,7 +19,7 @@ FIGURES = {
         "Potential as lines and force as arrows in a plane, for three places of DFR.",
     ),
     "1.12": Figure(
-        "Simulated. The camera's object: four edge points, their noisy average at {ready_to_hold.camera.rate:g} Hz, "
+        "Simulated. The camera's object: four edge points, their noisy average at {.camera.rate:g} Hz, "
         "off-centre, over two seconds.",
         "Points of the measured position about the true centre of an object.",
     ),

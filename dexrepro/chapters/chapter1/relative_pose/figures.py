@@ -11,7 +11,7 @@ from dexrepro.report import style
 
 FIGURES = {
     "1.5": Figure(
-        "A hand moves {relative_pose.move:g} m in a minimum-jerk movement of three durations; tool displacement with "
+        "A hand moves {.move:g} m in a minimum-jerk movement of three durations; tool displacement with "
         "s(v) applied to each sample's step and to the total displacement since the fixing (Eq. (1.11) to the "
         "letter). The book shows the frames of the transformation.",
         "Displacement of the tool over time in the incremental and the total form, for three durations of the "

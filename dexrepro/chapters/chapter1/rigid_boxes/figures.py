@@ -15,8 +15,8 @@ from .experiment import RELEASED, SIZES
 
 FIGURES = {
     "1.17": Figure(
-        "Rigid boxes held by sides of {rigid_boxes.cases.small.width:g}, {rigid_boxes.cases.medium.width:g} and "
-        "{rigid_boxes.cases.large.width:g} m, simulated Baxter arms, friction contact: pictures at holding, carrying "
+        "Rigid boxes held by sides of {.cases.small.width:g}, {.cases.medium.width:g} and "
+        "{.cases.large.width:g} m, simulated Baxter arms, friction contact: pictures at holding, carrying "
         "and after the drop; contact force on AFR; height of the box. Lines: the start poses. The book shows "
         "photographs.",
         "Pictures of boxes of three sizes at three instants, and contact force and height over time.",

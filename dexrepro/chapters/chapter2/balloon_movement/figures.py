@@ -20,7 +20,7 @@ FIGURES = {
         "The partner's path, a straight line followed by a circle.",
     ),
     "2.11": Figure(
-        "Simulated Baxter, synthetic operator, balloon as a spring of {balloon_movement.stiffness:g} N/m. (a), (b) "
+        "Simulated Baxter, synthetic operator, balloon as a spring of {.stiffness:g} N/m. (a), (b) "
         "Paths of both grippers under the proposed law; (c) holding force under the three laws of the book's figure; "
         "(d) force errors on the line (12 to 20 s) and on the circle (from 20 s), with the printed and with tuned "
         "gains (F: integral).",

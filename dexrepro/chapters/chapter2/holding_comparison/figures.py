@@ -16,7 +16,7 @@ from dexrepro.report.tables import by_case
 FIGURES = {
     "2.8": Figure(
         "Holding force of s1 to s18 of Table 2.1, solid with the regulation (2.8), dashed without, and the root mean "
-        "square of the force error over the second period (from {holding_comparison.period:g} s). Curves that leave a "
+        "square of the force error over the second period (from {.period:g} s). Curves that leave a "
         "panel are cut; the number at its top is the largest force. The book shows the time histories; its panel (a) "
         "is the first two here.",
         "Holding forces of eighteen simulations over time in four groups, with bars of their errors.",

@@ -22,7 +22,7 @@ FIGURES = {
     "3.11": Figure(
         "Force on the forearm, the external torque of the three joints it loads most (pale and wide: true; thin: "
         "observed; two of the true ones coincide), with the nominal model and with an exact one, and Dis_R, during a "
-        "push of {external_push.push.force.1:g} N along y in reach 1. Simulated; the arm may touch box and lid, and "
+        "push of {.push.force.1:g} N along y in reach 1. Simulated; the arm may touch box and lid, and "
         "does not. The book plots force, torque and distance.",
         "Force, observed and true torques and the distance to the opening over time during a push, for two models.",
     ),

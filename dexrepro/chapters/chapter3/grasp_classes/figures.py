@@ -14,8 +14,8 @@ from .experiment import NAMES
 
 FIGURES = {
     "3.C": Figure(
-        "Accuracy on training and on new scenes over {grasp_classes.epochs} epochs, and confusion on the new scenes, "
-        "for a patch of {grasp_classes.patch_size:g} m that shows the walls. Synthetic RGB-D scenes rendered in place "
+        "Accuracy on training and on new scenes over {.epochs} epochs, and confusion on the new scenes, "
+        "for a patch of {.patch_size:g} m that shows the walls. Synthetic RGB-D scenes rendered in place "
         "of Cornell's data (the book states 98 % training accuracy and no test accuracy).",
         "Accuracy over the epochs on training and on new scenes, and a table of classes found and true.",
     ),

@@ -12,7 +12,7 @@ from dexrepro.report import style
 
 FIGURES = {
     "3.D": Figure(
-        "Objects lifted through the opening out of {grasp_through_opening.trials} random scenes: grasps chosen by the "
+        "Objects lifted through the opening out of {.trials} random scenes: grasps chosen by the "
         "network from the camera's picture against grasps drawn at random around what the camera sees, with 95 % "
         "intervals (simulated; closing is modelled as a rigid hold of an object that lies between the fingers). The "
         "book shows single grasps.",

@@ -15,7 +15,7 @@ from dexrepro.experiment import Config, Drawing, Drawings, Figure, Metrics, Reco
 from dexrepro.report import style
 from dexrepro.report.tables import by_case
 
-ARM = "Two-link arm in PyBullet under the law's torque, gravity and {skill_reuse.task.force.1:g} N at the tip. "
+ARM = "Two-link arm in PyBullet under the law's torque, gravity and {.task.force.1:g} N at the tip. "
 WEIGHTS = (
     ARM + "Weights of the Gaussians, one line a node, while the four strokes are learned one after another; above each "
     "panel how many exceed a tenth of the largest (joint 1). The book shows many small and few large weights."
