@@ -15,10 +15,9 @@ from .experiment import RELEASED, SIZES
 
 FIGURES = {
     "1.17": Figure(
-        "Rigid boxes held by sides of {.cases.small.width:g}, {.cases.medium.width:g} and "
-        "{.cases.large.width:g} m, simulated Baxter arms, friction contact: pictures at holding, carrying "
-        "and after the drop; contact force on AFR; height of the box. Lines: the start poses. The book shows "
-        "photographs.",
+        "Rigid boxes held by sides of {.cases.small.width:g}, {.cases.medium.width:g} and {.cases.large.width:g} m, "
+        "simulated Baxter arms, friction contact: pictures at holding, carrying and after the drop; contact force on "
+        "AFR; height of the box. Lines: the start poses. The book shows photographs.",
         "Pictures of boxes of three sizes at three instants, and contact force and height over time.",
     ),
     "1.B": Figure(

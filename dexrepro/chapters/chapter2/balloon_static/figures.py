@@ -15,10 +15,9 @@ FIGURES = {
         "Two arms of a Baxter robot face each other with a balloon between their grippers.",
     ),
     "2.10": Figure(
-        "Simulated Baxter, balloon as a spring of {.stiffness:g} N/m. (a), (b) Path of the follower's "
-        "gripper from two starts; (c), (d) contact force on it. Contact comes at y = "
-        "{.off_100.contact_y:.2f} and {.off_80.contact_y:.2f} m (book: about 0.25 m; it "
-        "shifts with the balloon's size, which is not printed).",
+        "Simulated Baxter, balloon as a spring of {.stiffness:g} N/m. (a), (b) Path of the follower's gripper from two "
+        "starts; (c), (d) contact force on it. Contact comes at y = {.off_100.contact_y:.2f} and "
+        "{.off_80.contact_y:.2f} m (book: about 0.25 m; it shifts with the balloon's size, which is not printed).",
         "Paths of the follower's gripper from two starts, and the contact forces over time.",
     ),
 }

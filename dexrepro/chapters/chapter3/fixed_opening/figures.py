@@ -17,10 +17,9 @@ from .experiment import REACHES
 
 _REACH = (
     "Distance of the end point to the target and shortest distance Dis_R of the arm to the remote centre in reach {} "
-    "(the book plots the default alone). Simulated: Baxter's right arm with a gripper of {{.gripper:g}} "
-    "m, mass error of the nominal model {{.model.mass_error:.0%}}, box and lid as collision bodies. "
-    "Position-only tasks pass through the lid untouched, so that laws are compared and not their collisions. The "
-    "book's time axes are not printed."
+    "(the book plots the default alone). Simulated: Baxter's right arm with a gripper of {{.gripper:g}} m, mass error "
+    "of the nominal model {{.model.mass_error:.0%}}, box and lid as collision bodies. Position-only tasks pass through "
+    "the lid untouched, so that laws are compared and not their collisions. The book's time axes are not printed."
 )
 FIGURES = {
     "3.2": Figure(
@@ -35,9 +34,8 @@ FIGURES = {
         "The shortest distance runs from the opening's centre to the foot point on the arm.",
     ),
     "3.4": Figure(
-        "The simulated workspace: box of {.box.size.1:g} m x {.box.size.0:g} m x "
-        "{.box.height:g} m, lid with a square hole, cube at the target of reach 1. The book shows a "
-        "photograph.",
+        "The simulated workspace: box of {.box.size.1:g} m x {.box.size.0:g} m x {.box.height:g} m, lid with a square "
+        "hole, cube at the target of reach 1. The book shows a photograph.",
         "A box with a hole in its lid in front of the robot's right arm.",
     ),
     "3.6": Figure(

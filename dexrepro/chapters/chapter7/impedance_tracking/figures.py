@@ -22,10 +22,9 @@ FIGURES = {
     ),
     "7.11": Figure(
         "(a-c) Joint torques under the corrected law with the printed k_s = 10 and, dashed, the gravity torque that "
-        "the nominal model knows (it knows neither gripper, cube nor friction); the cube is picked up at "
-        "{.pick:g} s and put down at {.release:g} s. (d, e) Planned and real path "
-        "of the tip from above and its height; (f) error of the tip with and without time-delay estimation, same "
-        "gains. Simulated; PyBullet, torque control.",
+        "the nominal model knows (it knows neither gripper, cube nor friction); the cube is picked up at {.pick:g} s "
+        "and put down at {.release:g} s. (d, e) Planned and real path of the tip from above and its height; (f) error "
+        "of the tip with and without time-delay estimation, same gains. Simulated; PyBullet, torque control.",
         "Torques of three joints, planned and real path, and the error of the tip with and without estimation.",
     ),
 }

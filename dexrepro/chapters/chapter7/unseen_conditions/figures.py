@@ -15,11 +15,10 @@ from .experiment import METHODS
 
 FIGURES = {
     "7.C": Figure(
-        "Fuzzy rules against simpler ways to react (simulated; not in the book). (a) Leave one out: RMS error of "
-        "each of the twelve reactions predicted from the other eleven (dots) and mean (bars). (b) "
-        "{.main.unseen_count:.0f} unseen conditions of places, heights and directions: mean error, "
-        "and the share of reactions that touch the obstacle; the person's own reactions to these conditions touch it "
-        "in the share drawn as a line.",
+        "Fuzzy rules against simpler ways to react (simulated; not in the book). (a) Leave one out: RMS error of each "
+        "of the twelve reactions predicted from the other eleven (dots) and mean (bars). (b) {.main.unseen_count:.0f} "
+        "unseen conditions of places, heights and directions: mean error, and the share of reactions that touch the "
+        "obstacle; the person's own reactions to these conditions touch it in the share drawn as a line.",
         "Errors of five ways to react where a condition was left out, and in unseen ones with the share that touch.",
     )
 }
