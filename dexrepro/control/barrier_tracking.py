@@ -80,14 +80,16 @@ class BarrierTracking:
         velocity_error, rate, rate_slope, feedback = self._feedback(position, velocity, desired)
         inertia, coriolis, gravity = self.networks
         axes = len(rate)
-        self.network_force = (
-            inertia.output(position, grow=True).reshape(axes, axes) @ rate_slope
-            + coriolis.output(np.concatenate((position, velocity)), grow=True).reshape(axes, axes) @ rate
-            + gravity.output(position, grow=True)
-        )
-        inertia.adapt((velocity_error[:, None] * -rate_slope).ravel())
-        coriolis.adapt((velocity_error[:, None] * -rate).ravel())
-        gravity.adapt(-velocity_error)
+        features = inertia.basis(position, grow=True)
+        mass = inertia.value(features).reshape(axes, axes)
+        drag = coriolis.output(np.concatenate((position, velocity)), grow=True).reshape(axes, axes)
+        if gravity.basis is not inertia.basis:
+            features = gravity.basis(position, grow=True)
+        self.network_force = mass.dot(rate_slope) + drag.dot(rate) + gravity.value(features)
+        descent = -velocity_error
+        inertia.adapt(np.multiply.outer(descent, rate_slope).reshape(-1))
+        coriolis.adapt(np.multiply.outer(descent, rate).reshape(-1))
+        gravity.adapt(descent)
         return Command(force=self.network_force + feedback + self._force_sign * force)
 
     def _feedback(self, position: Array, velocity: Array, desired: Motion[Array]) -> tuple[Array, Array, Array, Array]:

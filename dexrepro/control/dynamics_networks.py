@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,12 +34,14 @@ def dynamics_networks(
     kind: "broad" grows nodes and enhances them with cos and sin, Eqs. (8.18) to (8.24); "broad_plain" grows without
     enhancement; "fuzzy" has Gaussians on the grid of the levels [m, m/s]; "fuzzy_enhanced" adds cos and sin to it;
     "constant" has one node that is 1 everywhere, which makes of each network a (leaky) integral of the error.
+    D and G share one basis where width and threshold are the same, as the same inputs then give the same nodes.
     widths, rates (Gamma), thresholds (Theta; m, for C mixed with m/s): three numbers each, for D, C and G.
     leakage: beta [1/s]; neighbours, placement: m and beta_1 of Eqs. (8.19), (8.20); step: period of adaptation [s].
     """
     if kind not in KINDS:
         raise ValueError(f"kind of networks '{kind}' is none of {', '.join(KINDS)}")
 
+    @cache
     def basis(dimension: int, width: float, threshold: float) -> Basis:
         if kind == "constant":
             return GrowingGaussians(dimension, width=EVERYWHERE, threshold=EVERYWHERE, enhanced=False)

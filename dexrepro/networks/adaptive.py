@@ -78,7 +78,11 @@ class AdaptiveNetwork:
 
     def output(self, z: ArrayLike, grow: bool = False) -> Array:
         """Y(z), shape (outputs,); ``grow`` lets the basis add a node for ``z`` first."""
-        self.features = features = self.basis(z, grow)
+        return self.value(self.basis(z, grow))
+
+    def value(self, features: Array) -> Array:
+        """Y (outputs,) where the features of ``basis`` are at hand, as they are where another network shares it."""
+        self.features = features
         count = self._used.shape[1]
         if len(features) != count:
             self._weights[:, :count] = self._used
