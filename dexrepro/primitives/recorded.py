@@ -25,9 +25,10 @@ SPELT = {"in": "inch", "inches": "inch", "meters": "m", "metres": "m", "centimet
          "nsecs": "ns", "nanoseconds": "ns"}  # fmt: skip
 UNITS = {"", "-", *LENGTHS, *TIMES, *SPELT}
 TIME = {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}
+NANO = {"nanosec", "nanosecs", "nsec", "nsecs"}  # of a stamp whose whole seconds stand beside
 NO_PLACE = {"orientation", "rotation", "angular", "quaternion", "q", "velocity", "vel", "v", "speed", "acceleration",
             "acc", "force", "torque", "seq"}  # fmt: skip
-COMMENT = re.compile(r"\s*(#|%|//)[\s#%/]*")
+COMMENT = re.compile(r"\s*(#(?!N/A|[A-Z/0]+[!?])|%|//)[\s#%/]*")  # "#N/A", "#DIV/0!" and such are entries of a sheet
 FEWEST = 8
 LONG = 60.0  # s; a file that lasts longer with steps of a second or more has other stamps than seconds
 SHORT = 0.01  # s; no movement of a hand
@@ -118,7 +119,7 @@ class _Table:
             (k for k, line in enumerate(lines) if not COMMENT.match(line) and _numbers(line) >= enough), len(lines)
         )
         stripped = [line.strip(" \t,;") for line in lines]
-        self.body = [k for k in range(first, len(lines)) if stripped[k] and stripped[k][0] not in "#%/"]
+        self.body = [k for k in range(first, len(lines)) if stripped[k] and not COMMENT.match(lines[k])]
         self.separator = self._separator(lines[first - 1] if first else "")
         head = [k for k in range(first) if stripped[k] and not stripped[k].startswith("sep=")]
         plain = [k for k in head if not COMMENT.match(lines[k])]
@@ -127,12 +128,14 @@ class _Table:
                 self._name(lines[k])
                 if self.columns is not None:  # rows that hold no numbers enough are to be refused, not left out
                     self.body = [other for other in plain if other > k and _numbers(lines[other])] + self.body
+        if plain and not self.body:
+            shown = f"line {plain[-1] + 1} holds '{stripped[plain[-1]][:60]}'"
+            parted = "it has no row of numbers parted by commas, semicolons, tabs or blanks"
+            raise ValueError(f"{parted} ({', '.join(wanted)} are wanted); {shown}")
         if plain and self.columns is None:
             raise ValueError(
                 f"its columns are {', '.join(_fields(lines[plain[-1]]))}; they must be {', '.join(wanted)}"
             )
-        if plain and not self.body:
-            raise ValueError("it has no row of numbers parted by commas, semicolons, tabs or blanks")
         self._check(first)
 
     def _check(self, first: int) -> None:
@@ -264,7 +267,10 @@ def _column(wanted: str, names: Sequence[str]) -> int | None:
             ranked.append((not {"position", "pos"} & set(words), len(words), column))
     ranked.sort()
     if len(ranked) > 1 and ranked[0][:2] == ranked[1][:2]:
-        both = ", ".join(names[column] for _, _, column in ranked[:2])
+        first, second = (column for _, _, column in ranked[:2])
+        both = f"{names[first]} and {names[second]} (columns {first + 1} and {second + 1})"
+        if wanted == "time" and NANO & {*_parts(names[first]), *_parts(names[second])}:
+            raise ValueError(f"its time is split into {both}; give it in one column, 1e-9 times the nanoseconds added")
         raise ValueError(f"its columns {both} could both be {wanted}; rename one")
     return ranked[0][2] if ranked else None
 

@@ -22,6 +22,7 @@ from dexrepro.text import decoded
 TURNING = ("revolute", "continuous")
 FOREIGN = {"mujoco": "an MJCF file of MuJoCo", "sdf": "an SDF file of Gazebo", "COLLADA": "a COLLADA mesh"}
 MESHES = (".stl", ".obj", ".dae")  # what the engine reads
+LARGEST = 10.0  # m; what is longer in an arm's file is likely to be in another unit
 ROUNDING = 0.05
 """How far an inertia may be from a rigid body's and still be read: what its largest principal moment exceeds the sum of
 the others by, or what its smallest is below zero, as a share of the largest. Makers' rounding stays below."""
@@ -66,6 +67,8 @@ def _parsed(path: Path) -> xml.Element:
     eight_bits = declared and not declared[1].lower().startswith(b"utf")
     text = decoded(data, declared[1].decode() if declared and eight_bits else None)
     text = re.sub(r"<\?xml\s.*?\?>", "", text, count=1, flags=re.DOTALL)  # it may stand behind a comment
+    # What ROS reads of comments, "--" within them, no strict parser does.
+    text = re.sub("<!--.*?-->", lambda comment: "\n" * comment[0].count("\n"), text, flags=re.DOTALL)
     builder, parser = xml.TreeBuilder(element_factory=_Node), expat.ParserCreate("utf-8")
 
     def start(tag: str, attributes: dict[str, str]) -> None:
@@ -106,8 +109,12 @@ class _Tree:
                 raise ValueError(f"packages.{name} = {folder} is not allowed: there is no such folder")
         for name, node in _by_name(robot, "joint").items():
             for role in ("parent", "child"):
-                if _link(node, role) not in self.links:
-                    raise ValueError(f"joint '{name}' has no {role} link that is in the file")
+                if (link := _link(node, role)) not in self.links:
+                    close = difflib.get_close_matches(link, self.links, n=1)
+                    raise ValueError(
+                        f"joint '{name}' names '{link}' as its {role}, and no link has that name"
+                        f"{f'; did you mean {close[0]!r}?' if close else ''}"
+                    )
             if (other := self.into.setdefault(_link(node, "child"), node)) is not node:
                 raise ValueError(f"link '{_link(node, 'child')}' hangs on two joints, '{_name(other)}' and '{name}'")
             self.children[_link(node, "parent")].append(_link(node, "child"))
@@ -143,6 +150,7 @@ class _Tree:
                 f"{', '.join(off)}: no rigid body has this inertia (a moment exceeds the sum of the other two, or is "
                 f"negative, by that share of the largest); up to {100 * ROUNDING:g} % is taken for rounding and mended"
             )
+        self.mended += _doubts(above, joints, bodies)
         last, axis = bodies[-1], np.array(joints[-1].axis)
         if not axis @ last.inertia_matrix @ axis + last.mass * np.sum(np.cross(axis, last.com) ** 2) > 0:
             raise ValueError(f"link '{last.name}' has no inertia about joint '{joints[-1].name}'; give it one")
@@ -267,6 +275,8 @@ class _Tree:
                     size = tuple(
                         value for name in names for value in _floats(shape, name, "0 0 0" if kind == "box" else "0")
                     )
+                    if min(size) < 0:
+                        raise ValueError(f"{_place(shape, names[0])} of link '{part}' has a negative size")
                     found.append(Shape(kind, size, frame @ _pose(node), look, collides=bool(solid)))
         for node in visual:
             mesh = node.find("geometry/mesh")
@@ -307,6 +317,20 @@ class _Tree:
             self.mended.append(f"joint '{name}' has the limits {lower:g} to {upper:g}; they are in rad, not in degrees")
         bounds = (lower, upper) if bounded else (-math.inf, math.inf)
         return Joint(name, origin, tuple(_axis(node).tolist()), *bounds, effort or math.inf, velocity or math.inf)
+
+
+def _doubts(above: Sequence[xml.Element], joints: Sequence[Joint], bodies: Sequence[Link]) -> Iterator[str]:
+    """What can be simulated but no arm has, so that another unit than rad, m or kg is likely."""
+    for node in above:
+        turn = _floats(node.find("origin"), "rpy", "0 0 0")
+        if max(map(abs, turn)) > 2 * math.pi + 0.01:
+            yield f"joint '{_name(node)}' has the rpy {' '.join(f'{x:g}' for x in turn)}; it is in rad, not in degrees"
+    for joint, link in zip(joints, bodies, strict=True):
+        if (away := float(np.linalg.norm(joint.origin.xyz))) > LARGEST:
+            yield f"joint '{joint.name}' stands {away:g} m from what carries it; lengths are in m"
+        moment = float(np.linalg.eigvalsh(link.inertia_matrix)[-1])
+        if moment > link.mass * LARGEST**2 / 10:
+            yield f"link '{link.name}' has {moment:g} kg m^2 at {link.mass:g} kg; its units are kg and m"
 
 
 def _by_name(robot: xml.Element, kind: str) -> dict[str, xml.Element]:

@@ -187,7 +187,7 @@ def test_a_drawing_of_ones_own_is_led_round_ones_own_block_after_following_the_r
         ("block.csv", "1,2\n3,4\n", "map.block_file: 'block.csv': it has no area; it must hold the corners"),
         ("block.csv", "1,2\n3,x\n4,5\n", "map.block_file: 'block.csv': line 2 holds '3,x'"),
         ("block.csv", "60,60\n62,60\n62,62\n", "must lie across the second of the two sub-skills"),
-        ("drawing.csv", "1,2\n3,4\n", "demonstrations: 'drawing.csv': its columns are 3, 4; they must be time"),
+        ("drawing.csv", "1,2\n3,4\n", "demonstrations: 'drawing.csv': it has no row of numbers"),
     ],
 )
 def test_a_map_that_cannot_be_used_gets_one_sentence(name: str, text: str, sentence: str) -> None:

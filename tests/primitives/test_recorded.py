@@ -142,7 +142,16 @@ def test_units_come_from_the_header_or_from_who_knows_better(
         ("time,x [mm],y [mm]", Format("cm"), "its header gives x in mm, not in cm; set unit=mm"),
         ("time [h],x,y", Format(), "its header gives time in h; set time_unit= to s, ms, us, ns, min"),
         ("time,x1,y1", Format(), "its columns are time, x1, y1; they must be time, x, y"),
-        ("time,left.x,right.x,y", Format(), "its columns left.x, right.x could both be x; rename one"),
+        (
+            "time,left.x,right.x,y",
+            Format(),
+            r"its columns left.x and right.x .columns 2 and 3. could both be x; rename one",
+        ),
+        (
+            "stamp.sec,stamp.nanosec,x,y",
+            Format(),
+            "its time is split into stamp.sec and stamp.nanosec .columns 1 and 2.",
+        ),
     ],
 )
 def test_a_header_that_leaves_a_doubt_gets_one_sentence(
@@ -240,7 +249,8 @@ def test_a_million_rows_take_less_than_two_seconds(tmp_path: Path) -> None:
         (ROWS[:7], "time,x,y\n", "has 7 samples; there must be at least 8"),
         ([], "", "has 0 samples"),
         ([], "time,x,y\n", "it has no row of numbers parted by commas, semicolons, tabs or blanks"),
-        (["0.5|1|2"] * 9, "time|x|y\n", "it has no row of numbers parted by"),
+        (["0.5|1|2"] * 9, "time|x|y\n", r"it has no row of numbers parted by .*; line 10 holds '0.5.1.2'"),
+        (["#N/A,1,2"] * 9, "0,1,2\n1,1,3\n", "line 3 holds '#N/A,1,2': every entry must be a finite number"),
         ([f"2026-11-28T10:00:0{k},{k},1" for k in range(9)], "time,x,y\n", "line 2 holds .*its time must be a number"),
         ([f"28.11.2026 10:00:0{k}.5,{k},1" for k in range(9)], "time,x,y\n", "line 2 holds .*not a date or a clock's"),
         (["2.0,NA,NA", *ROWS[1:]], "time,x,y\n", "line 2 holds '2.0,NA,NA': every entry must be a finite number"),
@@ -284,6 +294,14 @@ def test_what_is_no_text_is_said_to_be_none(tmp_path: Path) -> None:
     for begin in (b"PK\x03\x04\x14\0", b"\x1f\x8b\x08\0"):
         (tmp_path / "path.csv").write_bytes(begin + bytes(range(256)))
         with pytest.raises(ValueError, match="it is a spreadsheet or an archive, not text; export or unpack it first"):
+            read_path(str(tmp_path / "path.csv"))
+    for start, sentence in {
+        b"\x93NUMPY\x01": "a NumPy file, not text; export its numbers as CSV", b"MATLAB 5.0 MAT-": "a MATLAB file",
+        b"\x89HDF\r\n": "an HDF5 file", b"\n<!DOCTYPE html>": "a web page; download the file itself",
+        b"version https://git-lfs.github.com/spec/v1\n": "a pointer of Git LFS to the file; run: git lfs pull",
+    }.items():  # fmt: skip
+        (tmp_path / "path.csv").write_bytes(start)
+        with pytest.raises(ValueError, match=f"cannot read '.*': it is {sentence}"):
             read_path(str(tmp_path / "path.csv"))
 
 

@@ -19,6 +19,7 @@ from dexrepro.physics.engines.pybullet import connect, disconnect, load_arm  # n
 
 INERTIAL = """<inertial><origin xyz="{0} 0.02 -0.01" rpy="0.3 0.1 {0}"/><mass value="{1}"/>
 <inertia ixx="0.01" ixy="0.001" ixz="0" iyy="0.02" iyz="0.002" izz="0.025"/></inertial>"""
+MOMENTS = INERTIAL[INERTIAL.index("<inertia ") : INERTIAL.index("</inertial>")]
 URDF = f"""<robot name="three">
 <link name="floor"/>
 <joint name="stand" type="fixed"><origin xyz="0.1 0.2 0.3" rpy="0 0 0.5"/>
@@ -104,6 +105,7 @@ BOMB = "<!DOCTYPE robot [<!ENTITY e0 'xxxxxxxxxx'>" + "".join(
         (("</robot>", f"<transmission>{LOOP}<link name='one'/></transmission></robot>"), "utf-8"),
         (("</robot>", "</robot>\n\0\0\0"), "utf-8"),
         (('<mass value="2"/>', '<mass value="2"/><!-- ${mass} -->'), "utf-8"),
+        (("<robot", "<!------ arm -- of 2019 --- -->\n<robot"), "utf-8"),
         (("<robot", "<!-- of 2019 -->\n\n<?xml version='1.0'\nencoding='utf-8'?>\r\n<robot"), "utf-8"),
         (("<robot", '<!DOCTYPE robot [<!ENTITY two "2">]><robot'), "utf-8"),
         (("<robot", "<robot xmlns='http://www.ros.org' xmlns:xacro='http://www.ros.org/wiki/xacro'"), "utf-8"),
@@ -126,7 +128,9 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
     [
         (("</robot>", ""), "it is no XML file"),
         (("robot", "mujoco"), "it is an MJCF file of MuJoCo"),
-        (("robot", "html"), "it is no URDF: it begins with <html>"),
+        (("robot", "html"), "it is a web page; download the file itself that it shows"),
+        (("robot", "model"), "it is no URDF: it begins with <model>"),
+        (("0.1 0.1 0.2", "0.1 -0.1 0.2"), 'line 1: <box size="0.1 -0.1 0.2"> of link .one. has a negative size'),
         (("<robot", BOMB), "it is no XML file: limit on input amplification"),
         (('value="2"', 'value="0,2"'), 'line 1: <mass value="0,2"> does not hold one number'),
         (('value="2"', 'value="inf"'), '<mass value="inf"> does not hold one number'),
@@ -135,7 +139,7 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
         (('"camera" type="fixed">', '"camera" type="prismatic"><mimic joint="yaw" multiplier="-1"/>'), "'camera' off"),
         (('value="2"', 'value="${m}"'), "it still holds xacro; turn it into URDF first"),
         (("</robot>", "<xacro:hand/></robot>"), "it still holds xacro; turn it into URDF first"),
-        (('<link name="tip"', '<link name="toe"'), "has no child link that is in the file"),
+        (('<link name="tip"', '<link name="toe"'), "names .tip. as its child, and no link .*did you mean .toe"),
         (('<link name="eye"', '<link name="two"'), "there are two links 'two'"),
         (('<joint name="camera"', '<joint name="plate"'), "there are two joints 'plate'"),
         (('<link name="eye"', "<link"), "a link has no name"),
@@ -146,7 +150,7 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
         (('value="2"', 'value="heavy"'), '<mass value="heavy"> does not hold one number'),
         (('value="2"', 'value="nan"'), '<mass value="nan"> does not hold one number'),
         (('parent link="floor"', 'parent link="one"'), "the joints form a loop at link 'one'"),
-        (('parent link="floor"', 'parent link="flor"'), "joint 'stand' has no parent link that is in the file"),
+        (('parent link="floor"', 'parent link="flor"'), "'stand' names .flor. as its parent, .*did you mean .floor"),
         (('value="2"', 'value="-4"'), "link 'one' has the mass -4 kg; it must not be negative"),
         ((LIMIT, '<limit lower="2" upper="-1"/>'), "joint 'pitch' has the limits 2 to -1"),
         ((LIMIT, '<limit lower="1" upper="1"/>'), "joint 'pitch' has the limits 1 to 1; it cannot move"),
@@ -256,6 +260,12 @@ def test_no_limits_or_zeros_are_none(path: Path) -> None:
         (("</robot>", '<link name="stray"/></robot>'), "link 'stray' hangs on no joint; only what hangs on 'floor' is"),
         (('"camera" type="fixed"', '"camera" type="floating"'), "joint 'camera' off the chain is floating and taken"),
         ((LIMIT, '<limit lower="-170" upper="170"/>'), "joint 'pitch' has the limits -170 to 170; they are in rad"),
+        (('rpy="0 0.4 0"', 'rpy="0 90 0"'), "joint 'pitch' has the rpy 0 90 0; it is in rad, not in degrees"),
+        (('"0.1 0 0" rpy', '"100 0 0" rpy'), "joint 'pitch' stands 100 m from what carries it; lengths are in m"),
+        (
+            ('value="2"/>' + MOMENTS, 'value="2"/><inertia ixx="90" iyy="80" izz="70"/>'),
+            "link 'one' has 9.* kg m.2 at 3 kg",
+        ),
     ],
 )
 def test_what_is_read_though_it_is_doubtful_is_said(path: Path, change: tuple[str, str], sentence: str) -> None:
