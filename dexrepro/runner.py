@@ -21,6 +21,7 @@ from typing import Any
 from dexrepro import __version__, chapters
 from dexrepro.case import live
 from dexrepro.case import run as run_case
+from dexrepro.case import targets
 from dexrepro.checks import differences, leaves
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
@@ -44,6 +45,7 @@ from dexrepro.storage import (
 
 PACKAGES = ("pandas", "matplotlib", "hydra-core")  # beside those that can change a number
 log = logging.getLogger(__name__)
+NO_NUMBER = "the law "  # how a status begins that says which law gave no number, when, and what instead
 SHOWN = 6  # differences that are named
 SUMMARY = "summary"  # stands for the numbers over several cases in nested metrics
 KEPT, RECENT = 6, 7 * 24 * 3600  # cached results a case: so many, and all of the last seconds (a sweep may need them)
@@ -51,17 +53,21 @@ KEPT, RECENT = 6, 7 * 24 * 3600  # cached results a case: so many, and all of th
 
 @dataclass
 class Outcome:
-    """What a run did: result folders, failures as sentences, experiments skipped with the reason."""
+    """What a run did: result folders, failures as sentences, experiments skipped with the reason.
+
+    unusable: cases that a law of the user's ended by giving no number, as sentences; their results are there up to then.
+    """
 
     folders: dict[str, Path] = field(default_factory=dict)
     failures: dict[str, str] = field(default_factory=dict)
+    unusable: dict[str, str] = field(default_factory=dict)
     skipped: dict[str, str] = field(default_factory=dict)
     differs: dict[str, list[str]] = field(default_factory=dict)
 
     def reasons(self) -> dict[str, list[str]]:
         """What failed, by the sentence that says why."""
         found: dict[str, list[str]] = {}
-        for name, sentence in self.failures.items():
+        for name, sentence in {**self.failures, **self.unusable}.items():
             found.setdefault(sentence, []).append(name)
         return found
 
@@ -369,6 +375,7 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
         waiting[plan.experiment] = {job.case for job in missing}
         todo += missing
     if not waiting and not again:
+        outcome.unusable = _unusable(plans, outcome.folders)
         return outcome
     by_name = {plan.experiment: plan for plan in plans}
     # An experiment of few cases has long ones: they begin, and the short ones of the others fill the gaps at the end.
@@ -416,7 +423,20 @@ def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progre
     finally:
         for parent in parents:  # of workers that were ended
             remove_leftovers(parent)
+    outcome.unusable = _unusable(plans, outcome.folders)
     return outcome
+
+
+def _unusable(plans: Sequence[Plan], folders: Mapping[str, Path]) -> dict[str, str]:
+    """Cases that a law gave no number to, where the law is the user's: under one of the book's that is a result."""
+    found = {}
+    for plan in plans:
+        own = [job for job in plan.jobs if any(not text.startswith("dexrepro.") for text in targets(job.config))]
+        entries = read_json(plan.folder / "run.json")["cases"] if own and plan.experiment in folders else {}
+        for job in own:
+            if (status := entries.get(job.case, {}).get("status", "")).startswith(NO_NUMBER):
+                found[job.name] = status
+    return found
 
 
 def _why_again(plan: Plan) -> str:

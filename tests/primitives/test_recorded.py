@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dexrepro.primitives.recorded import Format, demonstrations, read_path, resampled
+from dexrepro.primitives.recorded import Format, demonstrations, read_corners, read_path, resampled
 
 numbers = st.integers(-100_000, 100_000).map(lambda thousandths: thousandths / 1000)
 instants = st.lists(st.floats(1e-3, 10), min_size=2, max_size=30).map(lambda steps: np.cumsum([0.0, *steps]))
@@ -322,3 +322,73 @@ def test_a_name_is_a_name_before_it_is_a_pattern(tmp_path: Path, name: str) -> N
     (tmp_path / name).write_text("\n".join(ROWS))
     (path,) = demonstrations(str(tmp_path / name), 1, 20, Format(), axes=2)
     assert path[-1] == pytest.approx([9, 18])
+
+
+SQUARE = ["0,0", "4,0", "4,2", "0,2"]
+AROUND = np.array([[0, 0], [4, 0], [4, 2], [0, 2]])
+
+
+@pytest.mark.parametrize(
+    ("header", "style", "otherwise", "factor"),
+    [
+        ("x,y\n", Format(), "m", 1),
+        ("x,y\n", Format(), "cm", 0.01),
+        ("x [mm],y [mm]\n", Format(), "cm", 0.001),
+        ("x,y\n", Format("inch"), "cm", 0.0254),
+        ("", Format(), "mm", 0.001),
+    ],
+)
+@pytest.mark.parametrize("closing", [[], SQUARE[:1]])  # an outline may return to where it began
+def test_corners_are_those_of_the_outline_in_order_and_in_metres(
+    tmp_path: Path, header: str, style: Format, otherwise: str, factor: float, closing: list[str]
+) -> None:
+    corners = read_corners(write(tmp_path, SQUARE + closing, header), style, otherwise)
+    assert corners == pytest.approx(factor * AROUND)
+
+
+def test_a_corner_that_another_one_only_shares_a_coordinate_with_is_kept(tmp_path: Path) -> None:
+    assert len(read_corners(write(tmp_path, ["0,0", "4,0", "4,2", "0,1"], "x,y\n"))) == 4
+    assert len(read_corners(write(tmp_path, ["0,0", "4,0", "0,1"], "x,y\n"))) == 3
+
+
+@pytest.mark.parametrize("rows", [["0,0", "1,1"], ["0,0", "1,1", "0,0"], ["0,0", "1,1", "2,2", "5,5"], ["1,1"], []])
+def test_what_has_no_area_is_no_outline(tmp_path: Path, rows: list[str]) -> None:
+    with pytest.raises(ValueError, match=r"path.csv': it has no "):
+        read_corners(write(tmp_path, rows, "x,y\n"))
+
+
+def test_an_outline_that_is_not_there_is_named() -> None:
+    with pytest.raises(ValueError, match=r"cannot read 'no.csv': No such file"):
+        read_corners("no.csv")
+
+
+def test_a_line_is_named_by_its_number_in_the_file_however_it_is_read(tmp_path: Path) -> None:
+    """Line 7 goes back in time; the empty entries of line 4 let the file be read row by row."""
+    for more in ([], [",,"]):
+        found = [*ROWS[:2], *more, *ROWS[2:5], ROWS[1], *ROWS[5:]]
+        with pytest.raises(ValueError, match=f"does not increase at line {7 + len(more)}$"):
+            read_path(write(tmp_path, found), axes=2)
+
+
+def test_whole_numbers_that_begin_by_counting_the_columns_are_samples(tmp_path: Path) -> None:
+    time, position = read_path(write(tmp_path, [f"{k},{k + 1},{k + 2}" for k in range(9)], ""), axes=2)
+    assert time == pytest.approx(np.arange(9))
+    assert position[0] == pytest.approx([1, 2])
+
+
+def test_one_row_is_too_few_and_said_so(tmp_path: Path) -> None:
+    for header in ("time,x,y\n", ""):
+        with pytest.raises(ValueError, match="it has 1 samples; there must be at least 8"):
+            read_path(write(tmp_path, ROWS[:1], header), axes=2)
+
+
+@pytest.mark.parametrize("spelt", ["min", "minutes"])
+def test_units_of_time_are_those_of_the_header(tmp_path: Path, spelt: str) -> None:
+    file = write(tmp_path, [f"{0.1 * k},{k},{2 * k}" for k in range(10)], f"time [{spelt}],x,y\n")
+    assert read_path(file, axes=2)[0][-1] == pytest.approx(54)
+
+
+def test_the_place_is_of_the_wanted_axes(tmp_path: Path) -> None:
+    file = write(tmp_path, [f"{0.1 * k},{k},{2 * k},{3 * k}" for k in range(10)], "time,x,y,z\n")
+    assert read_path(file)[1][-1] == pytest.approx([9, 18, 27])
+    assert read_path(file, axes=2)[1][-1] == pytest.approx([9, 18])
