@@ -118,7 +118,7 @@ class Pool:
                     yield from self._buried(worker)
                     continue
                 if kind == "begun":
-                    worker.begun = True
+                    worker.started()
                 elif kind == "report":
                     if self.report:
                         self.report(*content)
@@ -174,7 +174,7 @@ class _Worker:
         self.connection, theirs = context.Pipe()
         forked = context.get_start_method() == "fork"
         inherited = [*others, self.connection] if forked else []
-        self.process = context.Process(target=serve, args=(theirs, inherited), daemon=False)
+        self.process = context.Process(target=serve, args=(theirs, inherited, sys.path), daemon=False)
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message=".*fork.*", category=DeprecationWarning)
             self.process.start()
@@ -183,10 +183,15 @@ class _Worker:
         self.begun, self.deadline = False, float("inf")
 
     def begin(self, task: _Task) -> None:
-        self.task, self.begun = task, False
-        self.deadline = time.monotonic() + task.timeout if task.timeout else float("inf")
+        self.task, self.begun, self.deadline = task, False, float("inf")
         with contextlib.suppress(OSError):  # it has just died: the next look finds it
             self.connection.send((task.function, task.arguments))
+
+    def started(self) -> None:
+        """It works on its task: until now it may have imported, which is no case's own time."""
+        self.begun = True
+        if self.task and self.task.timeout:
+            self.deadline = time.monotonic() + self.task.timeout
 
     def end(self) -> None:
         """Kill the process and all that it has started."""
@@ -201,8 +206,9 @@ class _Worker:
 # ------------------------------------------------------------------------------------------------------ in a worker
 
 
-def serve(connection: Connection, inherited: list[Connection]) -> None:
-    """What a worker does: a task after another, until its pipe is closed."""
+def serve(connection: Connection, inherited: list[Connection], path: list[str]) -> None:
+    """What a worker does: a task after another, until its pipe is closed; it imports from where the command does."""
+    sys.path[:] = path  # a process that is spawned would take "" for the folder in which the command began
     for other in inherited:
         other.close()
     forget_edited()
@@ -216,11 +222,11 @@ def serve_tasks(connection: Connection) -> None:
     while True:
         try:
             received = connection.recv_bytes()
-            connection.send(("begun", None))
         except (EOFError, OSError):
             os._exit(0)
         try:
             function, arguments = ForkingPickler.loads(received)
+            connection.send(("begun", None))
             answer = ForkingPickler.dumps(("done", function(*arguments)))
         except BaseException as error:
             answer = ForkingPickler.dumps(("done", Failure.of(error)))

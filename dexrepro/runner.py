@@ -19,9 +19,8 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import __version__, chapters
-from dexrepro.case import live
+from dexrepro.case import live, targets
 from dexrepro.case import run as run_case
-from dexrepro.case import targets
 from dexrepro.checks import differences, leaves
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
@@ -55,7 +54,7 @@ KEPT, RECENT = 6, 7 * 24 * 3600  # cached results a case: so many, and all of th
 class Outcome:
     """What a run did: result folders, failures as sentences, experiments skipped with the reason.
 
-    unusable: cases that a law of the user's ended by giving no number, as sentences; their results are there up to then.
+    unusable: cases that a law of the user's ended by giving no number, as sentences; there is a result up to then.
     """
 
     folders: dict[str, Path] = field(default_factory=dict)

@@ -179,18 +179,32 @@ def test_odd_surroundings_change_nothing(toy: Path, toy_result: Path, line: str,
     assert (toy_result / "metrics.json").read_bytes() == before
 
 
-@pytest.mark.parametrize("where", ["results/.cache", "results", "results/chapter90"])
-def test_a_full_or_missing_disk_is_named(
-    toy_result: Path, command: Command, monkeypatch: pytest.MonkeyPatch, where: str
-) -> None:
-    before, mkdir = whole(toy_result), Path.mkdir
+FULL = """
+from pathlib import Path
 
-    def full(path: Path, *arguments: object, **options: object) -> None:
-        if str(path).startswith(where) and path.suffix == ".part":
+simulated = simulate
+
+
+def simulate(config, rng):
+    mkdir = Path.mkdir
+
+    def full(path, *arguments, **options):
+        if str(path).startswith({where!r}) and path.suffix == ".part":
             raise OSError(28, "No space left on device", str(path))
         mkdir(path, *arguments, **options)
 
-    monkeypatch.setattr(Path, "mkdir", full)
+    Path.mkdir = full
+    return simulated(config, rng)
+"""
+
+
+@pytest.mark.parametrize("where", ["results/.cache", "results", "results/chapter90"])
+def test_a_full_or_missing_disk_is_named(toy_result: Path, toy_book: Path, command: Command, where: str) -> None:
+    """The disk is full for the process that simulates and stores, however that began."""
+    before = whole(toy_result)
+    with open(toy_book / "chapter90/decay/experiment.py", "a") as code:
+        code.write(FULL.format(where=where))
+    chapters.forget()
     status, said = command("run only=decay workers=1 force=true")
     assert status == 1
     assert "No space left on device" in said

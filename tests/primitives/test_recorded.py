@@ -351,7 +351,7 @@ def test_a_corner_that_another_one_only_shares_a_coordinate_with_is_kept(tmp_pat
     assert len(read_corners(write(tmp_path, ["0,0", "4,0", "0,1"], "x,y\n"))) == 3
 
 
-@pytest.mark.parametrize("rows", [["0,0", "1,1"], ["0,0", "1,1", "0,0"], ["0,0", "1,1", "2,2", "5,5"], ["1,1"], []])
+@pytest.mark.parametrize("rows", [["0,0", "1,1"], ["0,0", "1,1", "0,0"], ["0,0", "1,2", "2,4", "5,10"], ["1,1"], []])
 def test_what_has_no_area_is_no_outline(tmp_path: Path, rows: list[str]) -> None:
     with pytest.raises(ValueError, match=r"path.csv': it has no "):
         read_corners(write(tmp_path, rows, "x,y\n"))

@@ -180,6 +180,8 @@ def _attempt(
             _keep(recording, run, items, names, held[0])
     recording.steps += run.steps
     recording.simulated += run.simulated
+    if recording.status == "finished" and not run.status.startswith("finished"):
+        recording.status = run.status
     outcome = "lifted" if lifted else "held, not lifted" if held else "closed on nothing"
     return {
         "x": grasp.x,

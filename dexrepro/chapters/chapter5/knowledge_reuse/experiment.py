@@ -14,7 +14,7 @@ from dexrepro.experiment import Config, Metrics, Recording
 
 def simulate(config: Config, rng: Rng) -> Recording:
     nominal, generator = pen.model(config), rng("nodes")
-    centres, weights, rows, steps = np.empty((0, 6)), None, [], 0
+    centres, weights, rows, steps, status = np.empty((0, 6)), None, [], 0, "finished"
     for index, letter in enumerate(config.hand.sequence):
         path = bounded_tracking.learned_path(letter, config, rng)
         target = pen.reference(pen.on_paper(path), config.arm.step)
@@ -30,8 +30,9 @@ def simulate(config: Config, rng: Rng) -> Recording:
         early = recording.between(0, config.early)
         rows.append((letter, len(centres), *(1e3 * np.sqrt((squared[early].mean(), squared.mean()))), usage))
         steps += recording.steps
+        status = recording.status if status == "finished" else status
     frame = pd.DataFrame(rows, columns=["letter", "nodes", "early", "whole", "bound_use"])
-    return Recording(frames={"letters": frame}, steps=steps, simulated=steps * config.arm.step)
+    return Recording(frames={"letters": frame}, steps=steps, simulated=steps * config.arm.step, status=status)
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
