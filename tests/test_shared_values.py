@@ -9,6 +9,7 @@ import pytest
 
 from dexrepro import chapters
 from dexrepro.config import compose_chapter, experiment_cases, leaves, resolved_block
+from dexrepro.provenance import commented_leaves, parse_provenance
 
 ALIASES = {"control_period": ("dt",), "step": ("dt",), "speed_limit": ("speed",)}
 """Names under which a law takes what the experiment calls otherwise."""
@@ -49,3 +50,13 @@ def test_a_value_that_rivals_share_reaches_all_of_them_when_it_is_set(number: st
         if len(set(reached.values())) > 1:
             apart.append(f"{name} does not reach {[copy for copy, reaches in reached.items() if not reaches]}")
     assert not apart
+
+
+@pytest.mark.parametrize("number", chapters.numbers())
+def test_a_number_that_the_book_prints_in_one_place_stands_in_one_place(number: str) -> None:
+    found: dict[tuple[str, str, str], list[str]] = {}
+    for key, value, comment in commented_leaves(number):
+        origin = parse_provenance(comment)
+        if origin and origin.kind == "printed" and ".cases." not in key and value[0] in "0123456789-[":
+            found.setdefault((key.rpartition(".")[2], value, origin.text), []).append(key)
+    assert [keys for keys in found.values() if len(keys) > 1] == []
