@@ -19,7 +19,7 @@ def check_words(config: Mapping[str, Any], words: Mapping[str, tuple[str, ...]],
 
 
 _POSITIVE = re.compile(
-    r"(^|_)(mass|masses|lengths?|period|step|duration|inertia|samples|repetitions|substeps|time_constant|radius)$"
+    r"(^|_)(mass|masses|lengths?|period|step|duration|inertia|samples|repetitions|substeps|time_constant|radius|frequency)$"
 )
 _NOT_NEGATIVE = re.compile(r"(^|_)(stiffness|damping|friction|noise|noise_std|delay|width|height|cutoff|tolerance)$")
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dexrepro import chapters
-from dexrepro.checks import check_values, is_number, is_whole, leaves
+from dexrepro.checks import check_values, is_number, is_whole, leaves, value_at
 from dexrepro.errors import InputError, nearest, refused
 from dexrepro.kept import kept
 from dexrepro.physics.engine import ENGINES, is_installed
@@ -73,7 +73,13 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         composed = inherited(_compose(chapter, [*forced(overrides, raw), *search]))
     except RecursionError:
         raise InputError("an override is nested too deeply") from None
-    except (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, TypeError) as error:
+    except (HydraException, OmegaConfBaseException) as error:
+        cause = error.__cause__ or error
+        if (key := getattr(cause, "full_key", None)) and "not in struct" in str(cause):
+            known = _keys(inherited(raw))
+            raise InputError(f"unknown key '{key}': {nearest(key, known)} (a new one: '+{key}=VALUE')") from error
+        raise InputError(" ".join(str(cause).split())) from error
+    except (yaml.YAMLError, ValueError, TypeError) as error:
         raise InputError(" ".join(str(error.__cause__ or error).split())) from error
     if unknown := [key for key in composed if key not in shipped]:
         if not extra_dir:
@@ -289,6 +295,9 @@ def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> Non
         if override.is_add() or override.is_force_add() or "/" in key or key.startswith("hydra"):
             continue
         if key not in keys:
+            listed = re.sub(r"(\.\d+)(\..*)?$", "", key)
+            if isinstance(value_at(shipped, listed), list):
+                raise InputError(f"'{key}' lies in a list, which is given whole: '{listed}=[…]'")
             raise InputError(f"unknown key '{key}': {nearest(key, keys)}")
 
 

@@ -195,3 +195,20 @@ def test_every_parameter_that_is_a_word_declares_the_words_there_are(chapter: st
 def test_an_unknown_word_or_a_wrong_length_is_refused(chapter: str, override: str, sentence: str) -> None:
     with pytest.raises(InputError, match=re.escape(sentence)):
         plan_chapter(chapter, [override])
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["scene.gravity.2=-1.6"], r"'scene.gravity.2' lies in a list, which is given whole: 'scene.gravity=.….'"),
+        (["scene.gravity.2.x=-1.6"], r"'scene.gravity.2.x' lies in a list, which is given whole: 'scene.gravity="),
+        (
+            ["scene.leader={poins: 3}"],
+            r"unknown key 'scene.leader.poins': did you mean 'scene.leader.points'. .a new o",
+        ),
+        (["scene.servo.frequency=0"], "scene.servo.frequency = 0 is not allowed: it must be greater than 0"),
+    ],
+)
+def test_what_a_word_cannot_set_is_said_by_its_whole_key(words: list[str], sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        experiment_cases(compose_chapter("own", words), "scene")

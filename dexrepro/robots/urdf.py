@@ -46,6 +46,10 @@ def from_urdf(
     pictures and touch nothing. An inertia within :data:`ROUNDING` of a rigid body's becomes one.
     Raises ValueError with one sentence where the file cannot be used; warns with one where it was mended.
     """
+    if len(base) not in (3, 6):
+        raise ValueError(
+            f"base = {[*base]} is not allowed: it must be x, y, z [m], or these with roll, pitch, yaw [rad]"
+        )
     try:
         tree = _Tree(_parsed(Path(path).expanduser()), Path(path).expanduser(), packages or {})
         arm = tree.arm(end, root, base)

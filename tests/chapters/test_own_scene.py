@@ -321,11 +321,12 @@ def test_a_noisy_sensor_is_noisy_and_the_same_in_every_run() -> None:
         ("pushes={force: [0, 1], start: 1, duration: 1}",
          r"scene.pushes.force = \[0, 1\] is not allowed: it must be three numbers"),
         ("pushes=[{force: [0, 1, 0], start: 1}]", "scene.pushes.0.duration = None is not allowed: it must be a number"),
+        ("pushes={force: [0, 1, 0], start: -1, duration: 1}", "scene.pushes.0.start = -1 is not allowed: it must be 0"),
         ("pushes=[5]", "scene.pushes.0 = 5 is not allowed: it must have force, start, duration, link, point"),
         ("wall={point: [0,0,0], normal: [0,0,0], stiffness: 5}", r"scene.wall.normal = \[0, 0, 0\] is not allowed"),
         ("wall={point: [0,0,0], normal: [1,0,0], stifness: 5}", "unknown key 'scene.wall.stifness': did you"),
         ("elastic={stiffness: 5, rest_length: 1, damp: 2}", "unknown key 'scene.elastic.damp': did you mean 'damping'"),
-        ("elastic={stiffness: 5, rest_length: 1, to: box}", "scene.elastic.to = box is not allowed: it must be three"),
+        ("elastic={stiffness: 5, rest_length: 1, to: box}", "scene.elastic.to = box .* three numbers, or lead"),
         ("box={size: [1, 1], position: [0, 0, 0]}", r"scene.box.size = \[1, 1\] is not allowed: it must be three num"),
         ("box={size: [1, 1, -1], position: [0, 0, 0]}", r"scene.box.size = \[1, 1, -1\] is not allowed: .* greater t"),
         ("box={position: [0, 0, 0]}", "scene.box.size = None is not allowed: it must be three numbers"),
@@ -343,3 +344,12 @@ def test_what_is_wrong_in_a_block_names_key_value_and_what_is_allowed(word: str,
     law = "scene.law={_target_: dexrepro.control.joint_pd.JointPD, stiffness: 300, damping: 20}"
     with pytest.raises(InputError, match=sentence):
         scene.simulate(configured(law, f"scene.{word}"), lambda purpose: generator(0, "scene", purpose))
+
+
+def test_a_push_after_the_end_is_said() -> None:
+    law = "scene.law={_target_: dexrepro.control.joint_pd.JointPD, stiffness: 300, damping: 20}"
+    push = "scene.pushes={force: [0, 1, 0], start: 9, duration: 1}"
+    with pytest.warns(
+        UserWarning, match=r"scene.pushes.0.start = 9 comes after the end at 0.1 s: there is no such push"
+    ):
+        scene.simulate(configured(law, push, "scene.duration=0.1"), lambda purpose: generator(0, "scene", purpose))

@@ -60,6 +60,14 @@ def test_dynamics_and_end_point_are_those_of_the_file(path: Path) -> None:
     assert forward(arm, q)[0] == pytest.approx(tip, abs=1e-9)
 
 
+@pytest.mark.parametrize("base", [(), (0, 0), (0, 0, 0, 1)])
+def test_a_base_has_three_or_six_numbers(path: Path, base: tuple[int, ...]) -> None:
+    with pytest.raises(
+        ValueError, match=r"base = .* is not allowed: it must be x, y, z .m., or these with roll, pitch"
+    ):
+        from_urdf(str(path), "tip", base=base)
+
+
 def test_limits_and_base_are_those_given(path: Path) -> None:
     arm = from_urdf(str(path), "tip", base=[1, 0, 0, 0, 0, np.pi / 2])
     assert arm.lower.tolist() == [-np.inf, -1]

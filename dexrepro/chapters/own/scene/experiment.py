@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
@@ -73,6 +74,13 @@ def scene(config: Config, noise: np.random.Generator | None = None) -> World:
         names = [body.name for body in arm.links]
         if link is not None and link not in names:
             raise InputError(f"scene.pushes.{number}.link = {link} is not allowed: there are {', '.join(names)}")
+        if not 0 <= push["start"] < config.duration:
+            where, end = f"scene.pushes.{number}.start", f"{config.duration:g} s"
+            if push["start"] < 0:
+                raise refused(where, push["start"], f"be 0 or greater, and before the end at {end}")
+            warnings.warn(
+                f"{where} = {push['start']} comes after the end at {end}: there is no such push", stacklevel=2
+            )
         force = pulse(push["force"], push["start"], push["duration"])
         world.add(Push("arm", force, link, point, f"push{number or ''}"))
     for box in given["box"]:
@@ -110,7 +118,7 @@ def _blocks(config: Config, name: str) -> list[dict[str, Any]]:
             value, length = block.get(key), BLOCKS[name][key]
             fits = _vector(value, 3) if length == 3 else _vector([value], 1) if length == 1 else isinstance(value, str)
             if not fits and not (key == "to" and value == "leader"):
-                kind = {0: "a name", 1: "a number", 3: "three numbers"}[length]
+                kind = {0: "a name", 1: "a number", 3: "three numbers"}[length] + (", or leader" if key == "to" else "")
                 raise refused(f"{where}.{key}", value, f"be {kind}")
     if len(blocks) > 1 and name in ("payload", "sensor", "box"):
         raise InputError(f"scene.{name} is given {len(blocks)} times; it must be one")
