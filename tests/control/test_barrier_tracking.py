@@ -92,6 +92,15 @@ def test_the_networks_carry_the_load_and_not_the_feedback():
     assert learning.network_force[1] > 10.0
 
 
+def test_a_basis_shared_by_mass_and_gravity_changes_no_number():
+    law, apart = controller(), controller()
+    inertia, coriolis, _ = law.networks
+    law.networks = inertia, coriolis, AdaptiveNetwork(inertia.basis, 2, gain=1000.0, leakage=5.0, step=1e-3)
+    assert np.array_equal(drive(law, duration=0.5), drive(apart, duration=0.5))
+    assert [network.nodes for network in law.networks] == [network.nodes for network in apart.networks]
+    assert apart.networks[2].nodes > 0
+
+
 def test_the_measured_force_is_cancelled_with_the_minus_sign():
     quiet = drive(controller(boundary_layer=0.01), duration=0.5)
     pushed = drive(controller(boundary_layer=0.01), duration=0.5, push=(10.0, 0.0))

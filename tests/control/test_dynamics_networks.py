@@ -6,9 +6,9 @@ from dexrepro.control.dynamics_networks import KINDS, dynamics_networks
 LEVELS = dict(position_levels=[0.1, 0.2, 0.3], velocity_levels=[0.01, 0.02, 0.03])
 
 
-def build(kind):
+def build(kind, thresholds=(0.1, 0.3, 0.1)):
     return dynamics_networks(
-        kind, 2, widths=[0.1] * 3, rates=[1.0] * 3, leakage=5.0, thresholds=[0.1, 0.3, 0.1], neighbours=1,
+        kind, 2, widths=[0.1] * 3, rates=[1.0] * 3, leakage=5.0, thresholds=thresholds, neighbours=1,
         placement=1.0, step=1e-3, **LEVELS,
     )  # fmt: skip
 
@@ -33,6 +33,14 @@ def test_an_enhanced_grid_has_the_gaussians_of_the_plain_one_and_never_grows():
         assert features[:, 1] == pytest.approx(np.cos(plain(point)))
     enhanced.reset()
     assert enhanced.nodes == 9
+
+
+def test_mass_and_gravity_share_a_basis_where_it_is_the_same_for_both():
+    inertia, coriolis, gravity = build("broad")
+    assert inertia.basis is gravity.basis
+    assert inertia.basis is not coriolis.basis
+    inertia, _, gravity = build("broad", thresholds=(0.1, 0.3, 0.2))
+    assert inertia.basis is not gravity.basis
 
 
 def test_an_unknown_kind_is_refused():

@@ -33,14 +33,15 @@ def test_one_step_is_the_printed_law():
 
 def test_a_new_node_leaves_the_output_unchanged():
     basis = GrowingGaussians(1, width=1.0, threshold=0.5)
-    network = AdaptiveNetwork(basis, outputs=1, gain=1.0, leakage=0.0, step=0.1)
+    network = AdaptiveNetwork(basis, outputs=2, gain=1.0, leakage=0.0, step=0.1)
     network.output([0.0], grow=True)
-    network.adapt(np.array([2.0]))
+    network.adapt(np.array([2.0, -1.0]))
     before = network.output([0.8])
     after = network.output([0.8], grow=True)
     assert basis.nodes == 2
     assert len(network.weights) == 6
     assert after == pytest.approx(before, abs=1e-12)
+    assert np.abs(before).min() > 0.1
 
 
 def test_learned_weights_start_a_larger_network():
@@ -87,3 +88,12 @@ def test_a_network_that_forgets_has_no_weights_and_the_nodes_of_its_start():
     assert network.features == pytest.approx([1.0])
     assert network.output([6.0]).tolist() == [0.0]
     assert network.features == pytest.approx([np.exp(-0.25)]), "exp(-|z - c|^2 / width^2)"
+
+
+def test_a_gain_set_later_counts_from_the_next_step():
+    network = AdaptiveNetwork(Gaussians([[0.0]], 1.0), outputs=1, gain=1.0, leakage=0.0, step=0.1)
+    network.output([0.0])
+    network.adapt(np.array([1.0]))
+    network.gain = 3.0 * network.gain
+    network.adapt(np.array([1.0]))
+    assert network.weights == pytest.approx(np.array([[0.1 + 0.3]]))
