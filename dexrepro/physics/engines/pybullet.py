@@ -36,10 +36,8 @@ class BulletBody(RigidBody):
         super().__init__(body, mass)
 
     def read(self) -> None:
-        (self.x, self.y, self.z), self.orientation = bullet.getBasePositionAndOrientation(
-            self.body, physicsClientId=self.client
-        )
-        (self.vx, self.vy, self.vz), self.spin = bullet.getBaseVelocity(self.body, physicsClientId=self.client)
+        (self.x, self.y, self.z), self.orientation = bullet.getBasePositionAndOrientation(self.body, self.client)
+        (self.vx, self.vy, self.vz), self.spin = bullet.getBaseVelocity(self.body, self.client)
 
     def place(self, position: Sequence[float], orientation: Sequence[float] | None = None) -> None:
         self.x, self.y, self.z = position
@@ -47,7 +45,7 @@ class BulletBody(RigidBody):
         bullet.resetBasePositionAndOrientation(self.body, position, turn, physicsClientId=self.client)
 
     def push_at(self, force: Vector, place: Vector) -> None:
-        bullet.applyExternalForce(self.body, -1, force, place, bullet.WORLD_FRAME, physicsClientId=self.client)
+        bullet.applyExternalForce(self.body, -1, force, place, bullet.WORLD_FRAME, self.client)
 
 
 class BulletArm(SimulatedArm):
@@ -73,7 +71,7 @@ class BulletArm(SimulatedArm):
         super().__init__(body, name, arm, position, sensor, rng)
 
     def _state(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        angles, rates, _, _ = zip(*bullet.getJointStates(self.body, self._indices, physicsClientId=self.client))
+        angles, rates, _, _ = zip(*bullet.getJointStates(self.body, self._indices, self.client))
         return angles, rates
 
     def _put(self, angles: list[float], rates: list[float]) -> None:
@@ -86,20 +84,19 @@ class BulletArm(SimulatedArm):
         )
 
     def _end(self) -> tuple[float, float, float, float, float, float]:
-        state = bullet.getLinkState(self.body, self.end.link, 1, 1, physicsClientId=self.client)
+        state = bullet.getLinkState(self.body, self.end.link, 1, 1, self.client)
         (cx, cy, cz), (rx, ry, rz) = state[0], rotated(state[1], self.end.from_com)
         (ux, uy, uz), (ox, oy, oz) = state[6], state[7]
         return cx + rx, cy + ry, cz + rz, ux + oy * rz - oz * ry, uy + oz * rx - ox * rz, uz + ox * ry - oy * rx
 
     def _push(self, force: Vector) -> None:
-        bullet.applyExternalForce(
-            self.body, self.end.link, force, (self.x, self.y, self.z), bullet.WORLD_FRAME, physicsClientId=self.client
-        )
+        place = self.x, self.y, self.z
+        bullet.applyExternalForce(self.body, self.end.link, force, place, bullet.WORLD_FRAME, self.client)
 
     def _dynamics(self) -> tuple[Array, Array]:
         client, body, factor = self._twin
-        mass = np.array(bullet.calculateMassMatrix(body, self.q, physicsClientId=client))
-        bias = np.array(bullet.calculateInverseDynamics(body, self.q, self.dq, self._zeros, physicsClientId=client))
+        mass = np.array(bullet.calculateMassMatrix(body, self.q, 0, client))
+        bias = np.array(bullet.calculateInverseDynamics(body, self.q, self.dq, self._zeros, 0, client))
         if factor < 1:
             mass /= factor
             bias /= factor
@@ -108,7 +105,7 @@ class BulletArm(SimulatedArm):
     def _felt_torque(self) -> Array:
         client, body, _ = self._twin
         linear, _ = bullet.calculateJacobian(
-            body, self.end.link, self.end.for_jacobian, self.q, self.dq, self._zeros, physicsClientId=client
+            body, self.end.link, self.end.for_jacobian, self.q, self.dq, self._zeros, client
         )
         torque: Array = np.array((self.fx, self.fy, self.fz)) @ np.array(linear)
         return torque
@@ -143,7 +140,7 @@ class BulletScene:
             self.client = -1
 
     def advance(self) -> None:
-        bullet.stepSimulation(physicsClientId=self.client)
+        bullet.stepSimulation(self.client)
 
     def arm(
         self,
@@ -317,43 +314,30 @@ class BulletModel(RigidBodyModel):
         self._close()
 
     def mass_matrix(self, q: Array) -> Array:
-        return self._scaled(bullet.calculateMassMatrix(self._body, _list(q), physicsClientId=self._client))
+        return self._scaled(bullet.calculateMassMatrix(self._body, _list(q), 0, self._client))
 
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array) -> Array:
-        torque = bullet.calculateInverseDynamics(
-            self._body, _list(q), _list(dq), _list(ddq), physicsClientId=self._client
-        )
+        torque = bullet.calculateInverseDynamics(self._body, _list(q), _list(dq), _list(ddq), 0, self._client)
         return self._scaled(torque)
 
     def bias(self, q: Array, dq: Array) -> Array:
-        torque = bullet.calculateInverseDynamics(
-            self._body, _list(q), _list(dq), self._zeros, physicsClientId=self._client
-        )
+        torque = bullet.calculateInverseDynamics(self._body, _list(q), _list(dq), self._zeros, 0, self._client)
         return self._scaled(torque)
 
     def gravity(self, q: Array) -> Array:
-        torque = bullet.calculateInverseDynamics(
-            self._body, _list(q), self._zeros, self._zeros, physicsClientId=self._client
-        )
+        torque = bullet.calculateInverseDynamics(self._body, _list(q), self._zeros, self._zeros, 0, self._client)
         return self._scaled(torque)
 
     def jacobian(self, q: Array) -> Array:
         linear, angular = bullet.calculateJacobian(
-            self._body,
-            self._end.link,
-            self._end.for_jacobian,
-            _list(q),
-            self._zeros,
-            self._zeros,
-            physicsClientId=self._client,
+            self._body, self._end.link, self._end.for_jacobian, _list(q), self._zeros, self._zeros, self._client
         )
         return np.array(linear + angular)
 
     def tip_torque(self, q: Array, force: Sequence[float]) -> Array:
         linear, _ = bullet.calculateJacobian(
-            self._body, self._end.link, self._end.for_jacobian, _list(q), self._zeros, self._zeros,
-            physicsClientId=self._client,
-        )  # fmt: skip
+            self._body, self._end.link, self._end.for_jacobian, _list(q), self._zeros, self._zeros, self._client
+        )
         fx, fy, fz = force
         return np.array([fx * x + fy * y + fz * z for x, y, z in zip(*linear)])
 
