@@ -103,10 +103,11 @@ class GrowingGaussians(Basis):
             if squared[index] <= self.threshold**2:
                 return False
             nearest = self._centres[index]
-        elif self._count <= self.neighbours:
-            nearest = self.centres.mean(axis=0)
         else:
-            nearest = self._centres[np.argpartition(squared, self.neighbours - 1)[: self.neighbours]].mean(axis=0)
+            near = self.centres
+            if self._count > self.neighbours:
+                near = near[np.argpartition(squared, self.neighbours - 1)[: self.neighbours]]
+            nearest = np.add.reduce(near) / len(near)  # half the time of numpy's mean
         offset = z - nearest
         if float(offset @ offset) <= self.threshold**2:
             return False

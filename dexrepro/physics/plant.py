@@ -318,10 +318,10 @@ class SimulatedArm(Point, ABC):
 
     def _feel(self) -> None:
         """Add last step's contact forces on the last moving link and what it carries to the sensed force."""
-        touching = [touch for touch in self.touches() if touch.link >= self.dof - 1]
-        self.fx += sum(touch.force[0] for touch in touching)
-        self.fy += sum(touch.force[1] for touch in touching)
-        self.fz += sum(touch.force[2] for touch in touching)
+        for touch in self.touches():
+            if touch.link >= self.dof - 1:
+                x, y, z = touch.force
+                self.fx, self.fy, self.fz = self.fx + x, self.fy + y, self.fz + z
 
 
 class Touch(NamedTuple):
