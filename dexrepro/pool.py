@@ -25,7 +25,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, whole_number
 
 TICK = 0.2  # s between looks at workers whose end nobody announces
 BLAS_THREADS = "DEXREPRO_BLAS_THREADS"  # variable of the environment: another count than one, to see what rounding does
@@ -78,6 +78,7 @@ class Pool:
     ) -> None:
         self.size, self.report, self.here, self.tick = workers or available_cores(), report, here, tick
         method = start_method()
+        whole_number(BLAS_THREADS, os.environ.get(BLAS_THREADS, "1"), 1, 1024)
         if multiprocessing.get_start_method(allow_none=True) not in (None, *multiprocessing.get_all_start_methods()):
             multiprocessing.set_start_method(method, force=True)  # joblib's own is unknown to what is spawned
         self._context = multiprocessing.get_context(method)
@@ -284,8 +285,11 @@ def forget_edited() -> None:
 
 def start_method() -> str:
     """How processes begin: as DEXREPRO_START or the program says; else by a fork on Linux, which is quick and safe."""
-    chosen = os.environ.get("DEXREPRO_START") or multiprocessing.get_start_method(allow_none=True)
-    if chosen in multiprocessing.get_all_start_methods():  # joblib's workers have one of their own
+    known, told = multiprocessing.get_all_start_methods(), os.environ.get("DEXREPRO_START")
+    if told and told not in known:
+        raise InputError(f"DEXREPRO_START = {told} is not allowed: it must be one of {', '.join(known)}")
+    chosen = told or multiprocessing.get_start_method(allow_none=True)
+    if chosen in known:  # joblib's workers have one of their own
         return chosen
     return "fork" if sys.platform == "linux" else "spawn"
 

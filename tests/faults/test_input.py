@@ -211,6 +211,23 @@ def test_a_full_or_missing_disk_is_named(toy_result: Path, toy_book: Path, comma
     assert whole(toy_result) == before
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "sentence"),
+    [
+        ("DEXREPRO_BLAS_THREADS", "abc", "DEXREPRO_BLAS_THREADS = abc is not allowed"),
+        ("DEXREPRO_BLAS_THREADS", "0", "DEXREPRO_BLAS_THREADS = 0 is not allowed"),
+        ("DEXREPRO_START", "spwan", "DEXREPRO_START = spwan is not allowed: it must be one of"),
+    ],
+)
+def test_a_variable_of_the_environment_with_a_wrong_value_is_named(
+    toy: Path, command: Command, monkeypatch: pytest.MonkeyPatch, name: str, value: str, sentence: str
+) -> None:
+    monkeypatch.setenv(name, value)
+    status, said = command("run only=decay workers=1")
+    assert status == 2
+    assert sentence in " ".join(said.split())
+
+
 def test_every_text_file_is_utf8_by_decree() -> None:
     """Also where a system has another alphabet: no call leaves the encoding open."""
     left = []
