@@ -224,7 +224,7 @@ class _Scene:
                     arm.command(answer[0], answer[1], self._step)
                 else:
                     arm.command(answer, None, self._step)
-            except (TypeError, ValueError, LookupError, AttributeError, ArithmeticError) as error:
+            except (TypeError, ValueError, LookupError, AttributeError, ArithmeticError, NameError) as error:
                 what = " ".join(str(error).split())
                 kind = "" if isinstance(error, Unusable) else f"{type(error).__name__}: "
                 name = _name_of(controller)

@@ -243,6 +243,20 @@ def test_the_own_scene_takes_laws_of_every_kind_so_that_each_must_declare_its_ow
         chapters.load("own").experiment("scene").simulation.simulate(live({**values, "perturbation": 0.0}), None)
 
 
+class Nameless(Joint):
+    """Uses what it has not imported."""
+
+    def __call__(self, measured: Measured[Any], desired: Motion[Any]) -> Command:
+        return Command(numpy.zeros(2))  # type: ignore[name-defined]  # noqa: F821
+
+
+def test_a_name_that_a_law_has_not_imported_is_the_laws_failure() -> None:
+    with World() as world:
+        world.add_arm("arm", planar([0.4, 0.3], [1.0, 0.8]), [0.1, 0.2])
+        with pytest.raises(LawFailed, match=r"the law Nameless of arm 'arm' failed at 0 s: NameError: name 'numpy' is"):
+            world.run(0.01, {"arm": JointDrive(Nameless(), rest([0.0, 0.0]))})
+
+
 def test_what_fails_is_the_law_and_not_its_adapter() -> None:
     with World() as world:
         world.add_arm("arm", planar([0.4, 0.3], [1.0, 0.8]), [0.1, 0.2])
