@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 from collections.abc import Callable
 from pathlib import Path
 
@@ -233,7 +234,9 @@ print(len(list(pathlib.Path("results/.cache/decay").glob("mine-*"))))
 
 
 def session(folder: Path, script: str, beginning: str = SESSION) -> list[str]:
-    (folder / "session.py").write_text(beginning + script)
+    """What a script prints; its processes may be spawned, which import it."""
+    guarded = "if __name__ == '__main__':\n" + textwrap.indent(script, "    ")
+    (folder / "session.py").write_text(f"{beginning}\n{guarded}")
     done = subprocess.run(
         [sys.executable, "session.py"], cwd=folder, env={**os.environ, "PYTHONPATH": f"{ROOT}"}, capture_output=True,
         text=True, timeout=300, check=False,
