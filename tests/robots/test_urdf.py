@@ -147,7 +147,7 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
         (('"camera" type="fixed">', '"camera" type="prismatic"><mimic joint="yaw" multiplier="-1"/>'), "'camera' off"),
         (('value="2"', 'value="${m}"'), "it still holds xacro; turn it into URDF first"),
         (("</robot>", "<xacro:hand/></robot>"), "it still holds xacro; turn it into URDF first"),
-        (('<link name="tip"', '<link name="toe"'), "names .tip. as its child, and no link .*did you mean .toe"),
+        (('<link name="tip"', '<link name="tipp"'), "names .tip. as its child, and no link .*did you mean .tipp"),
         (('<link name="eye"', '<link name="two"'), "there are two links 'two'"),
         (('<joint name="camera"', '<joint name="plate"'), "there are two joints 'plate'"),
         (('<link name="eye"', "<link"), "a link has no name"),
