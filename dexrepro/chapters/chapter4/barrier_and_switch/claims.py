@@ -75,7 +75,7 @@ CLAIMS = (
         "{.at_input.rmse_mm:.2f} mm with {.at_input.nodes} nodes and {.at_input.torque_increment_nm:.1f} N m of torque "
         "increment, the book's by {.base.rmse_mm:.2f} mm with {.base.nodes} nodes and {.base.torque_increment_nm:.1f} "
         "N m.",
-        turns="the rival's error is reproducible to 3 %, within which the reading ties",
+        turns="within the tolerance of the rival's error the reading ties",
     ),
     fig_4_3(
         "C4.29",

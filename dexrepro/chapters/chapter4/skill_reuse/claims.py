@@ -81,7 +81,7 @@ CLAIMS = (
         note="Increment of the torque in 10 ms: {.broad20.torque_increment_nm:.2f} N m against "
         "{.rbf10.torque_increment_nm:.2f} N m of width 10 at equal effective gain and "
         "{.common_rbf10.torque_increment_nm:.2f} N m with one gain for all.",
-        turns="its rivals chatter, and a tolerance is ten times the change seen, at which it does not turn",
+        turns="its rivals chatter, and a tolerance is a multiple of the change seen, at which it does not turn",
     ),
     fig_4_6(
         "C4.03b",
