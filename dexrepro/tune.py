@@ -172,15 +172,18 @@ def _of_laws(
     """What of the case's law declares a range; where nothing does, its own positive numbers, a quarter to four times,
     which is a guess.
 
-    Its own are those that stand in it, not what it refers to, such as ``${shared.dt}``.
+    Its own are those that stand in it, not what it refers to, such as ``${shared.dt}``; where none stands in it, those
+    that it shares with other experiments, not with the others of its own, such as the force they all hold.
     """
     of_law = tuple(f"{law}." for law in _laws(values))
     found = {key: span for key, span in declared.items() if key.startswith(of_law)}
-    own = {key: value for key, value in leaves(values) if key.startswith(of_law) and isinstance(value, float)}
     if found:
         return found, False
-    own = {key: value for key, value in own.items() if value > 0 and not isinstance(value_at(block, key), str)}
-    return {key: (value / 4, value * 4) for key, value in own.items()}, True
+    numbers = {key: value for key, value in leaves(values) if key.startswith(of_law) and isinstance(value, float)}
+    written = {key: str(value_at(block, key)) for key, value in numbers.items() if value > 0}
+    own = [key for key, text in written.items() if "${" not in text]
+    own = own or [key for key, text in written.items() if text.startswith("${shared.") and not key.endswith(".dt")]
+    return {key: (numbers[key] / 4, numbers[key] * 4) for key in own}, True
 
 
 def _laws(values: Mapping[str, Any]) -> list[str]:

@@ -19,7 +19,7 @@ CLAIMS = (
         less(".built.rising", 1e-9),
         control=less(".printed.rising", 1e-9),
         printed=less(".printed.rising", 1e-9),
-        searched="perfect tracking and tracking through (1.26), steps of 0.1 ms and less",
+        searched="perfect tracking and tracking through (1.26), smaller steps",
         note="Eq. (1.31) puts the follower's own position in place of the contact position, which the proof may not: V "
         "rises in {.built.rising:.1%} of the steps, although it ends at {.built.end:.2g} of {.built.start:.0f}.",
     ),
