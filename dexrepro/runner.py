@@ -12,10 +12,11 @@ import time
 import warnings
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from dexrepro import __version__, chapters
@@ -130,7 +131,7 @@ def execute(job: Job) -> CaseEntry:
         config = live(job.config)
         if job.own != own_digest(job.config) and "__main__." not in str(job.config):
             raise InputError("a file that it uses was edited meanwhile; the same command runs it again")
-        recording, metrics, wall = run_case(experiment, config, job.seed)
+        recording, metrics, wall = _run(experiment, config, job.seed)
     factor = recording.simulated / wall if recording.simulated else None
     doubts = sorted({" ".join(str(warning.message).split()) for warning in caught})
     entry = CaseEntry(recording.status, recording.steps, recording.simulated, wall, factor, doubts)
@@ -141,6 +142,25 @@ def execute(job: Job) -> CaseEntry:
         write_json(folder / "case.json", content)
         sync(folder)
     return entry
+
+
+def _run(experiment: Experiment, config: Config, seed: int) -> tuple[Recording, Metrics, float]:
+    """As ``case.run``. Raises InputError with the reason why a run ended where it ended too early to be measured."""
+    ends: list[str] = []
+
+    def simulate(*given: Any) -> Recording:
+        recording: Recording = experiment.simulation.simulate(*given)
+        ends.append(recording.status)
+        return recording
+
+    watched = replace(experiment)
+    vars(watched)["simulation"] = SimpleNamespace(simulate=simulate, measure=experiment.simulation.measure)
+    try:
+        return run_case(watched, config, seed)
+    except Exception as error:
+        if ends in ([], [Recording.status]):
+            raise
+        raise InputError(f"{ends[0]}; what was recorded until then is too little to be measured") from error
 
 
 def complete(job: Job) -> CaseEntry:

@@ -13,6 +13,8 @@ from dexrepro import chapters, cli, runner
 from dexrepro.case import generator, live
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import Command
+from dexrepro.errors import InputError
+from dexrepro.experiment import Config, Recording
 from dexrepro.physics.loop import LawFailed
 from dexrepro.physics.world import World
 from dexrepro.plan import plan_chapter
@@ -52,6 +54,18 @@ def test_that_a_law_of_the_book_ends_so_is_a_result(tmp_path: Path, monkeypatch:
         plan.folder.mkdir(parents=True)
         write_json(plan.folder / "run.json", {"cases": {"mine": {"status": "the law X failed at 1 s: it gave nan"}}})
         assert list(runner._unusable([plan], {"holding_line": plan.folder})) == ended
+
+
+@pytest.mark.parametrize(("status", "told"), [("the law X gave nan", InputError), ("finished", ValueError)])
+def test_a_run_that_ended_too_early_to_be_measured_says_why(
+    status: str, told: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    experiment = chapters.load("2").experiment("holding_line")
+    early = Recording({"time": np.zeros(1)}, status=status)
+    monkeypatch.setattr(experiment.simulation, "simulate", lambda *_: early)
+    monkeypatch.setattr(experiment.simulation, "measure", lambda recording, _: recording.time[1:].max())
+    with pytest.raises(told, match="zero-size" if status == "finished" else f"{status}; what was recorded"):
+        runner._run(experiment, Config(), 0)
 
 
 class Fails:
