@@ -223,14 +223,26 @@ def test_a_file_in_eight_bits_is_read_when_its_encoding_is_named(tmp_path: Path)
         read_path(str(tmp_path / "path.csv"), Format(encoding="latin-17"), 2)
 
 
-def test_a_million_rows_take_less_than_two_seconds(tmp_path: Path) -> None:
-    stamps = np.arange(1_000_000)
-    text = "\n".join(f"{k / 1000},{k},0.5" for k in stamps.tolist())
-    (tmp_path / "long.csv").write_text("time,x,y\n" + text + "\n,,\n")
+def test_a_million_rows_take_less_than_four_times_what_numpy_takes_for_them_alone(tmp_path: Path) -> None:
+    rows = [f"{k / 1000},{k},0.5" for k in range(1_000_000)]
+    (tmp_path / "long.csv").write_text("\n".join(["time,x,y", *rows, ",,", ""]))
     start = process_time()
+    np.loadtxt(rows, delimiter=",")
+    between = process_time()
     time, position = read_path(str(tmp_path / "long.csv"), axes=2)
-    assert process_time() - start < 2
+    assert process_time() - between < 4 * (between - start)
     assert len(position) == len(time) == 1_000_000
+
+
+def test_a_row_is_named_by_its_line_where_rows_are_read_one_by_one(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="does not increase at line 7"):
+        read_path(write(tmp_path, [f"{ROWS[0]},", *ROWS[1:5], ",,", ROWS[4], *ROWS[6:]], header=""), axes=2)
+
+
+def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
+    rows = [row.replace(",", ",0,", 1) for row in ROWS]
+    path = write(tmp_path, rows, "time,target x,position x,y\n")
+    assert read_path(path, axes=2)[1][:, 0] == pytest.approx(WANTED[:, 0])
 
 
 @pytest.mark.parametrize(
