@@ -13,7 +13,8 @@ from dexrepro.storage import read_json
 
 
 def measured() -> dict[str, Any]:
-    """machine, commands {command: {time: {seconds, memory [GB], disk [GB]}}}, cases {experiment.case: seconds}."""
+    """commands {command: {"machine": text, "first" and "again": {seconds, memory [GB], disk [GB]}}}, and cases
+    {experiment.case: seconds}."""
     from dexrepro.baselines import baseline_dir
 
     with suppress(OSError, ValueError):
@@ -29,8 +30,12 @@ def markdown() -> str:
     if not found.get("commands"):
         return "`make measure` finds out what the two commands take on a machine."
     lines = ["| command | time | memory | disk |", "| --- | --- | --- | --- |"]
+    where: dict[str, list[str]] = {}
     for command, times in found["commands"].items():
-        for when, row in times.items():
+        where.setdefault(times["machine"], []).append(f"`{command}`")
+        for when in ("first", "again"):
+            row = times[when]
             took, memory, disk = duration(row["seconds"]), f"{row['memory']:.1f} GB", f"{row['disk']:.1f} GB"
             lines.append(f"| `{command}`, {when} | {took} | {memory} | {disk} |")
-    return "\n".join([*lines, "", f"Measured on {found['machine']}."])
+    machines = ", ".join(f"{machine} ({' and '.join(commands)})" for machine, commands in where.items())
+    return "\n".join([*lines, "", f"Measured on {machines}."])
