@@ -145,7 +145,7 @@ def execute(job: Job) -> CaseEntry:
 
 
 def _run(experiment: Experiment, config: Config, seed: int) -> tuple[Recording, Metrics, float]:
-    """As ``case.run``. Raises InputError with the reason why a run ended where it ended too early to be measured."""
+    """As ``case.run``. Raises InputError with the reason why a run ended early where it then cannot be measured."""
     ends: list[str] = []
 
     def simulate(*given: Any) -> Recording:
@@ -160,7 +160,7 @@ def _run(experiment: Experiment, config: Config, seed: int) -> tuple[Recording, 
     except Exception as error:
         if ends in ([], [Recording.status]):
             raise
-        raise InputError(f"{ends[0]}; what was recorded until then is too little to be measured") from error
+        raise InputError(f"{ends[0]}; what was recorded until then cannot be measured") from error
 
 
 def complete(job: Job) -> CaseEntry:

@@ -57,7 +57,7 @@ def test_that_a_law_of_the_book_ends_so_is_a_result(tmp_path: Path, monkeypatch:
 
 
 @pytest.mark.parametrize(("status", "told"), [("the law X gave nan", InputError), ("finished", ValueError)])
-def test_a_run_that_ended_too_early_to_be_measured_says_why(
+def test_a_run_that_ended_early_and_cannot_be_measured_says_why(
     status: str, told: type[Exception], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     experiment = chapters.load("2").experiment("holding_line")
