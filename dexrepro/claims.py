@@ -313,8 +313,9 @@ def filled(text: str, values: Mapping[str, Any]) -> str:
 ROBUST, FRAGILE, OPEN = "robust", "fragile", "open"
 SHARE = 0.85
 """A claim is robust where it holds in at least this share of what the book leaves open."""
-LOOKS = (16, 20, 24, 28, 32, 36, 40, 48, 56, 64, 80, 100)
-"""Numbers of draws after which a study looks at its claims."""
+LOOKS = (16, 20, 26, 32, 39, 50, 60, 70, 79, 89, 100)
+"""Numbers of draws after which a study looks at its claims: from enough to tell what decides a fragile one, and where
+one failure more may leave it robust (26 without any, 39, 50, ...)."""
 CHANCES = {ROBUST: 1 / 64, FRAGILE: 1 / 100}
 """Of a wrong word at any one number of draws; over all numbers up to 100 together less than 0.05 for each word."""
 
