@@ -165,6 +165,7 @@ class Push:
             if link is None:
                 arm.push_unsensed(*self.force)
             else:
+                arm.burdened = True
                 arm.push_link(link, point, self.force)
 
         return apply

@@ -151,6 +151,8 @@ class SimulatedArm(Point, ABC):
         self.torque: Sequence[float] = self._zeros
         self.fx = self.fy = self.fz = 0.0
         self._located = False
+        self.burdened = False  # whether anything may act on it that neither ``load`` nor its force sensor tells
+        self._before: tuple[Array, Array, Array] | None = None
         self.reset(position)
         self.sense = Sense(self)
 
@@ -198,11 +200,12 @@ class SimulatedArm(Point, ABC):
         """Put the joints at given angles [rad] and rates [rad/s] (at rest by default)."""
         rates = self._zeros if velocity is None else np.asarray(velocity, dtype=float).tolist()
         self._put(np.asarray(position, dtype=float).tolist(), rates)
+        self._before = None
         self.read()
 
     def prepare(self, period: float) -> None:
         """Set up the sensors for a run with a control period [s], and let go of any torque of a run before."""
-        self.torque = self._zeros
+        self.torque, self._before = self._zeros, None
         sensor = self._sensor
         self.force_channel = None if sensor.exact_force else ForceChannel(sensor, period, self._rng)
         self.joint_channel = None if sensor.exact_joints else JointChannel(sensor, period, self._rng)
@@ -237,7 +240,7 @@ class SimulatedArm(Point, ABC):
         self.fx += fx
         self.fy += fy
         self.fz += fz
-        self.push_unsensed(fx, fy, fz)
+        self._pull(fx, fy, fz)
 
     def add_load(self, torque: Sequence[float] | Array) -> None:
         """Add joint torques [N m] that are not the controller's (friction, drag)."""
@@ -265,6 +268,8 @@ class SimulatedArm(Point, ABC):
         """
         if damping is not None:
             torque = self._damped(np.asarray(torque, dtype=float), damping, step)
+        elif self.burdened:
+            self._before = None
         torque = torque.tolist() if isinstance(torque, np.ndarray) else torque
         try:  # a sum is cheap and is not finite if any of its terms is not
             finite, right = -np.inf < sum(torque) < np.inf, len(torque) == self.dof
@@ -289,7 +294,8 @@ class SimulatedArm(Point, ABC):
         """Torque minus damping times the velocity at the END of the step.
 
         From M dq+ = M dq + h (torque + load - bias - D dq+) follows the acceleration a of (M + h D) a = torque + load
-        - bias - D dq, and the torque to apply is torque - D (dq + h a). D is a vector (diagonal) or a matrix.
+        - bias - D dq, and the torque to apply is torque - D (dq + h a). D is a vector (diagonal) or a matrix. What else
+        acts on a burdened arm is taken to be what it was in the step before, M dq+ - M dq - h (...) of that step.
         """
         damping = np.asarray(damping, dtype=float)
         brake = damping.__mul__ if damping.ndim == 1 else damping.dot
@@ -298,6 +304,11 @@ class SimulatedArm(Point, ABC):
         rest = torque - bias - brake(rate) if self.load is self._zeros else torque + self.load - bias - brake(rate)
         if self._planar is None and (self.fx or self.fy or self.fz):
             rest += self._felt_torque()
+        if self.burdened:
+            told, before = rest + brake(rate) - torque, self._before
+            self._before = mass.copy(), told, rate
+            if before is not None:  # ``torque`` of the arm is still that of the step before
+                rest += before[0].dot(rate - before[2]) / step - before[1] - self.torque
         if damping.ndim == 1:
             mass.reshape(-1)[:: self.dof + 1] += step * damping
         else:
@@ -309,6 +320,10 @@ class SimulatedArm(Point, ABC):
 
     def push_unsensed(self, fx: float, fy: float, fz: float) -> None:
         """Add a force on the end point [N] that the force sensor does not see."""
+        self.burdened = self.burdened or self._planar is None
+        self._pull(fx, fy, fz)
+
+    def _pull(self, fx: float, fy: float, fz: float) -> None:
         if not self._located:
             self.locate()
         if self._planar is not None:
@@ -319,6 +334,7 @@ class SimulatedArm(Point, ABC):
     def _feel(self) -> None:
         """Add last step's contact forces on the last moving link and what it carries to the sensed force."""
         for touch in self.touches():
+            self.burdened = True
             if touch.link >= self.dof - 1:
                 x, y, z = touch.force
                 self.fx, self.fy, self.fz = self.fx + x, self.fy + y, self.fz + z

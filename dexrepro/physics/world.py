@@ -166,6 +166,7 @@ class World:
             angularDamping=angular_damping,
         )  # fmt: skip
         self.scene.hinge(plant, body, (0.0, 0.0, drop))
+        plant.burdened = True
         return body
 
     def add(self, *elements: Element) -> None:
@@ -272,6 +273,7 @@ class World:
     def grip(self, arm: str, body: str) -> None:
         """Fix a body to an arm's end point as it lies there now, as closed fingers would; it still touches the rest."""
         self.scene.hold(self.arm(arm), self.bodies[body])
+        self.arm(arm).burdened = True
 
     def snapshot(
         self, recording: Recording, time: float, camera: Camera = Camera(), size: tuple[int, int] = (640, 480)

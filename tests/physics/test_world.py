@@ -68,6 +68,24 @@ def test_a_step_is_semi_implicit_and_damping_acts_at_its_end(name, damping):
         np.testing.assert_allclose(run["arm.tip"][k], forward(arm, q)[0], atol=1e-9)
 
 
+@pytest.mark.parametrize("burden", ["push", "link", "hung", "gripped"])
+def test_damping_does_not_matter_at_rest_under_a_load_that_no_sensor_tells(burden):
+    arm, start, weight = baxter("right"), posture("right"), 15.0
+    torque = RigidBodyModel(arm).gravity(start) + weight * jacobian(arm, start)[2]
+    with World() as world:
+        world.add_arm("arm", arm, start)
+        if burden == "hung":
+            world.hang("ball", "arm", weight / 9.81, 0.05)
+        elif burden == "gripped":
+            world.add_sphere("ball", 0.01, forward(arm, start)[0], weight / 9.81, collides=False)
+            world.grip("arm", "ball")
+        else:
+            last = {"link": arm.links[-1].name, "point": tuple(arm.tip[:3, 3])} if burden == "link" else {}
+            world.add(Push("arm", lambda t: (0, 0, -weight), **last))
+        run = world.run(0.3, {"arm": lambda sense: (torque, np.array([5.5, 5, 6, 4, 8.5, 9, 5]))})
+    assert np.abs(run["arm.tip"] - run["arm.tip"][0]).max() < 1e-4
+
+
 def test_stiff_damping_on_a_light_wrist_is_stable_only_when_implicit():
     arm, start = baxter("right"), posture("right")
     model = RigidBodyModel(arm)
