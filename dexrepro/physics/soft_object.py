@@ -31,7 +31,11 @@ class Cushion:
         self.slow_state: Real = 0.0
 
     def force(self, compression: Real, scale: Real = 1.0) -> Real:
-        """Force [N] of a compression [m], the elastic branch multiplied by ``scale``; one call a time step."""
+        """Force [N] of a compression [m], the elastic branch multiplied by ``scale``; one call a time step.
+
+        The branches relax where there is a gap, which is a negative compression.
+        """
+        compression = compression * (compression > 0.0)
         self.fast_state = self.fast_state + self.fast_share * (compression - self.fast_state)
         self.slow_state = self.slow_state + self.slow_share * (compression - self.slow_state)
         branches = self.fast * (compression - self.fast_state) + self.slow * (compression - self.slow_state)

@@ -21,6 +21,13 @@ def test_cushion_relaxes_to_its_elastic_force_and_never_pulls():
     assert cushion.force(0.001) == 0.0  # the slow branch has not come back yet
 
 
+def test_cushion_that_was_apart_does_not_push_at_first_touch():
+    cushion = Cushion(100.0, 1e-3, **SOFT)
+    forces = [cushion.force(-0.15 + 1e-4 * k) for k in range(1504)]
+    assert max(forces[:1501]) == 0.0
+    assert forces[1503] == pytest.approx(2 * 100.0 * 3e-4 * 2.2, rel=0.03)
+
+
 def test_cushion_works_on_batches():
     members = [Cushion(100.0, 1e-3, **SOFT) for _ in range(2)]
     batch = Cushion(100.0, 1e-3, **SOFT)
