@@ -98,17 +98,25 @@ class ErrorDynamics:
 
 
 def _tuned(plant: ErrorDynamics, config: Config, directions: Array) -> tuple[list[float], list[float]]:
-    """K11 and K21 that settle soonest from 1 rad (two directions) with no more torque than the printed gains need."""
-    errors = directions[:2]
+    """K11 and K21 that settle soonest from 1 rad (two directions) with no more torque than the printed gains need.
+
+    The torque is largest at the start, where |e1 + k2(e2) e2| says what K21 is allowed to be beside a K11.
+    """
+    errors, (k11, *powered), (_, *damped) = directions[:2], config.first, config.second
     allowed = config.allowed_torque
     limit = max(plant.settle(e, allowed.first, allowed.second)[2] for e in errors)
     best, found = np.inf, (config.first, config.second)
-    for f, g in itertools.product(config.sharing, repeat=2):
-        first, second = [config.first[0] * f, *config.first[1:]], [config.second[0] * g, *config.second[1:]]
-        runs = [plant.settle(e, first, second) for e in errors]
-        longest = float(np.max([run[0] for run in runs]))
-        if max(run[2] for run in runs) <= limit * (1 + 1e-9) and longest < best:
-            best, found = longest, (first, second)
+    for factor in config.sharing:
+        first = [k11 * factor, *powered]
+        e2 = secant(errors, first, *config.powers) * errors
+        rest = secant(e2, [0.0, *damped], *config.powers)
+        largest = float(np.min((limit - np.abs(errors)) / np.abs(e2) - rest))
+        for share in config.used:
+            second = [largest * share, *damped]
+            runs = [plant.settle(e, first, second) for e in errors]
+            longest = float(np.max([run[0] for run in runs]))
+            if max(run[2] for run in runs) <= limit * (1 + 1e-9) and longest < best and largest > 0:
+                best, found = longest, (first, second)
     return found
 
 
