@@ -13,6 +13,7 @@ ORDER = (
 )
 FAIRNESS = (
     "Laws share k_s, the slope k of the error, the nominal model, the torque limit, the period and the sensing; where "
-    "gains are tuned, every law had the same twelve pairs. What the estimation or the adaptive impedance is credited "
-    "with is judged beside integral action of the same K r with anti-windup, and beside a constant K."
+    "gains are tuned, every law had the same pairs, up to those with which it chatters. What the estimation or the "
+    "adaptive impedance is credited with is judged beside integral action of the same K r with anti-windup, and beside "
+    "a constant K."
 )
