@@ -1,6 +1,6 @@
 """The claims of the book counted: by verdict, and how many of them are reproduced, severely tested and robust.
 
-Counted from the stored baselines and studies alone, so that README, pages and tests have the same numbers.
+Counted from the stored baselines and studies alone, so that the README has the same numbers everywhere.
 """
 
 from __future__ import annotations
@@ -8,37 +8,35 @@ from __future__ import annotations
 from typing import Any
 
 from dexrepro import baselines, chapters, study
-from dexrepro.claims import AFTER_CORRECTION, FRAGILE, OPEN, REPRODUCED, ROBUST, VERDICTS
+from dexrepro.claims import FRAGILE, OPEN, ROBUST, VERDICTS
+from dexrepro.report import verdicts
 from dexrepro.report.listing import chapter_listing
 
 WORDS = (ROBUST, FRAGILE, OPEN)  # what studies show of the claims that hold
 
 
-def rows() -> list[dict[str, Any]]:
-    """One row a chapter: what it has, its claims of the book by verdict, those severely tested, and the headline."""
-    return [_row(number) for number in chapters.numbers()]
-
-
 def _row(number: str) -> dict[str, Any]:
+    """What a chapter has, its claims of the book by verdict, those severely tested, and the headline."""
     chapter, listed = chapters.load(number), chapter_listing(number)["experiments"]
     stored = baselines.stored(number).values()
     metrics = {name: entry["value"] for baseline in stored for name, entry in baseline.metrics.items()}
-    evaluated = [claim.evaluate(metrics) for claim in chapter.claims if claim.source == "book"]
     words = study.robustness_of(number)
-    hold = [item for item in evaluated if item.verdict in (REPRODUCED, AFTER_CORRECTION)]
-    severe = [item for item in hold if item.severe]
-    shown = [words.get(item.id, OPEN) for item in hold]
+    claims = [
+        {**claim.evaluate(metrics).as_dict(), "robustness": words.get(claim.id, OPEN)}
+        for claim in chapter.claims
+        if claim.source == "book"
+    ]
+    score = verdicts.score(claims)
+    shown = [claim["robustness"] for claim in claims if claim["verdict"] in verdicts.HOLDS]
     return {
         "chapter": number,
-        "title": chapter.title,
         "figures": sum(len(experiment["figures"]) for experiment in listed),
         "tables": sum(len(experiment["tables"]) for experiment in listed),
-        "claims": len(evaluated),
-        **{verdict: sum(item.verdict == verdict for item in evaluated) for verdict in VERDICTS},
+        "claims": score["total"],
+        **{verdict: score["counts"][verdict] for verdict in VERDICTS},
         **{word: shown.count(word) for word in WORDS},
-        "severe": len(severe),
-        "headline": sum(words.get(item.id) == ROBUST for item in severe if item.verdict == REPRODUCED),
-        "headline after correction": sum(words.get(item.id) == ROBUST for item in severe if item.verdict != REPRODUCED),
+        "severe": score["severe"],
+        "headline": score["headline"],
     }
 
 
@@ -52,7 +50,7 @@ COLUMNS = {
 
 def markdown() -> str:
     """The table of the README."""
-    counted = rows()
+    counted = [_row(number) for number in chapters.numbers()]
     total = {key: "all" if key == "chapter" else sum(row[key] for row in counted) for key in COLUMNS}
     lines = [" | ".join(COLUMNS.values()), " | ".join("---" for _ in COLUMNS)]
     lines += [" | ".join(str(row[key]) for key in COLUMNS) for row in (*counted, total)]

@@ -19,10 +19,11 @@ from dexrepro.keys import SELECTION
 )  # fmt: skip
 def list_command(options: argparse.Namespace) -> int:
     """Everything there is, as text or JSON; or the claims of the book counted, as the README's table."""
-    from dexrepro import scoreboard
     from dexrepro.report.listing import listing
 
     if options.markdown:
+        from dexrepro import scoreboard
+
         print(scoreboard.markdown())
         return OK
     if options.schema:

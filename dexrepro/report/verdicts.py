@@ -60,11 +60,6 @@ def strength(claim: Claim) -> str:
     return ("weak", "partial", "strong")[is_severe(claim) + (claim["robustness"] == ROBUST)]
 
 
-def is_headline(claim: Claim) -> bool:
-    """Whether a reader can build on it: it holds, was severely tested, and is robust."""
-    return claim["verdict"] in HOLDS and strength(claim) == "strong"
-
-
 def noticed(claim: Claim) -> str:
     """Whether a failure would have been noticed, in a phrase."""
     if claim.get("control_margin") is not None:
@@ -83,10 +78,14 @@ def often(claim: Claim) -> str:
 
 
 def score(evaluated: Iterable[Claim]) -> dict[str, Any]:
-    """Counts of the book's claims by verdict, of how well they are tested, and of our own tests."""
+    """Counts of the book's claims by verdict, of how well they are tested, and of our own tests.
+
+    strong: those that hold, were severely tested and are robust; headline: the reproduced among them.
+    """
     evaluated = list(evaluated)
     book = [claim for claim in evaluated if claim["source"] == "book"]
     held = [claim for claim in book if claim["verdict"] in HOLDS]
+    strong = [claim for claim in held if strength(claim) == "strong"]
     own = [claim for claim in evaluated if claim["source"] != "book" and claim["verdict"] != NOT_EVALUATED]
     return {
         "controlled": sum(claim.get("control_margin") is not None for claim in book),
@@ -94,8 +93,8 @@ def score(evaluated: Iterable[Claim]) -> dict[str, Any]:
         "counts": {verdict: sum(claim["verdict"] == verdict for claim in book) for verdict in VERDICTS},
         "severe": sum(is_severe(claim) for claim in held),
         "robust": sum(claim["robustness"] == ROBUST for claim in held),
-        "headline": sum(map(is_headline, book)),
-        "headline_corrected": sum(is_headline(claim) and claim["verdict"] == AFTER_CORRECTION for claim in book),
+        "strong": len(strong),
+        "headline": sum(claim["verdict"] == REPRODUCED for claim in strong),
         "ours": (sum(claim["verdict"] in HOLDS for claim in own), len(own)),
     }
 

@@ -28,22 +28,23 @@ SEVERE = {"control": "b < a", "control_margin": -0.5}
 
 
 @pytest.mark.parametrize(
-    ("values", "strength", "headline"),
+    ("values", "strength", "counts"),
     [
-        ({}, "weak", False),
-        (SEVERE, "partial", False),
-        ({"robustness": "robust"}, "partial", False),
-        ({**SEVERE, "robustness": "robust"}, "strong", True),
-        ({**SEVERE, "robustness": "robust", "verdict": "after correction"}, "strong", True),
-        ({**SEVERE, "robustness": "robust", "verdict": "not reproduced"}, "strong", False),
-        ({**SEVERE, "robustness": "robust", "verdict": "by construction"}, "strong", False),
-        ({"control": "b < a", "control_margin": 0.2, "robustness": "robust"}, "partial", False),
-        ({"control": "b < a", "control_margin": None, "robustness": "robust"}, "partial", False),
+        ({}, "weak", (0, 0)),
+        (SEVERE, "partial", (0, 0)),
+        ({"robustness": "robust"}, "partial", (0, 0)),
+        ({**SEVERE, "robustness": "robust"}, "strong", (1, 1)),
+        ({**SEVERE, "robustness": "robust", "verdict": "after correction"}, "strong", (1, 0)),
+        ({**SEVERE, "robustness": "robust", "verdict": "not reproduced"}, "strong", (0, 0)),
+        ({**SEVERE, "robustness": "robust", "verdict": "by construction"}, "strong", (0, 0)),
+        ({"control": "b < a", "control_margin": 0.2, "robustness": "robust"}, "partial", (0, 0)),
+        ({"control": "b < a", "control_margin": None, "robustness": "robust"}, "partial", (0, 0)),
     ],
 )
-def test_only_what_holds_was_tested_and_is_robust_makes_the_headline(values, strength, headline) -> None:
+def test_only_what_is_reproduced_was_tested_and_is_robust_makes_the_headline(values, strength, counts) -> None:
     assert verdicts.strength(claim(**values)) == strength
-    assert verdicts.is_headline(claim(**values)) is headline
+    score = verdicts.score([claim(**values)])
+    assert (score["strong"], score["headline"]) == counts
 
 
 def test_each_verdict_counts_apart_and_ours_beside_them() -> None:
