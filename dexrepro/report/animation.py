@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from dexrepro.arrays import Array
 from dexrepro.case import live, refuse_foreign, targets
 from dexrepro.config import compose_chapter
 from dexrepro.errors import InputError, nearest
@@ -114,14 +115,19 @@ def _frames(experiment: Experiment, config: Config, recording: Recording) -> Ite
     with experiment.simulation.scene(config) as world:
         if experiment.function("stage"):
             recording = experiment.simulation.stage(world, recording, config)
-        start, end = (film.span if film else None) or (recording.time[0], recording.time[-1])
-        shown = recording.time[recording.between(start, end)]
-        instants = shown[np.unique(np.linspace(0, len(shown) - 1, FRAMES).round().astype(int))]
-        plots = _plots(film, recording, shown) if film and film.channel in recording else None
-        for instant in instants:
+        times = instants(recording, film.span if film else None, FRAMES)
+        plots = _plots(film, recording, times) if film and film.channel in recording else None
+        for instant in times:
             picture = Image.fromarray(world.snapshot(recording, instant, camera, SIZE))
             ImageDraw.Draw(picture).text((10, 8), f"t = {instant:.1f} s", fill=(20, 20, 20), font=font)
             yield _beside(picture, *plots, instant) if plots else picture
+
+
+def instants(recording: Recording, span: tuple[float, float] | None, count: int) -> Array:
+    """At most ``count`` recorded instants [s] of a span, evenly; of the whole run where it ended before the span."""
+    within = recording.time[recording.between(*span)] if span else recording.time
+    shown = within if within.size else recording.time
+    return shown[np.unique(np.linspace(0, len(shown) - 1, count).round().astype(int))]
 
 
 def _beside(picture: Image.Image, past: Image.Image, future: Image.Image, column: Any, instant: float) -> Image.Image:
@@ -136,7 +142,7 @@ def _beside(picture: Image.Image, past: Image.Image, future: Image.Image, column
     return frame
 
 
-def _plots(film: Film, recording: Recording, shown: NDArray[np.float64]) -> tuple[Image.Image, Image.Image, Any]:
+def _plots(film: Film, recording: Recording, shown: Array) -> tuple[Image.Image, Image.Image, Any]:
     """The watched quantity over time, coloured and pale, and the function from an instant to its column."""
     values = recording[film.channel]
     values = film.scale * (np.linalg.norm(values, axis=1) if values.ndim > 1 else values)

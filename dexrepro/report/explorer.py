@@ -22,7 +22,7 @@ from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment, Film
 from dexrepro.physics.rendering import Camera, Solid
 from dexrepro.recordings import read_frame
-from dexrepro.report.animation import recorded_scene
+from dexrepro.report.animation import instants, recorded_scene
 from dexrepro.report.damage import check_series
 
 LONGEST = 4000  # samples of a case; of a longer one every k-th is shown
@@ -97,9 +97,7 @@ def _motion(place: Path, experiment: Experiment) -> tuple[str, Array, list[Solid
     with experiment.simulation.scene(config) as world:
         if stage := experiment.function("stage"):
             recording = stage(world, recording, config)
-        start, end = (film.span if film and film.case == case else None) or (recording.time[0], recording.time[-1])
-        shown = recording.time[recording.between(start, end)]
-        times = shown[np.unique(np.linspace(0, len(shown) - 1, FRAMES).round().astype(int))]
+        times = instants(recording, film.span if film and film.case == case else None, FRAMES)
         seen, poses = world.animate(recording, times)
     return case, times, seen, poses
 

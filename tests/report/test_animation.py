@@ -101,6 +101,14 @@ def test_another_case_is_shown_in_the_same_way(swing: tuple[Path, Experiment]) -
         assert film.size[0] == 2 * animation.SIZE[0]
 
 
+def test_a_run_that_ended_before_the_span_of_the_film_is_shown_as_a_whole(swing: tuple[Path, Experiment]) -> None:
+    time = np.linspace(0, 0.3, 7)
+    series = {"time": time, "angles": np.zeros((7, 2)), "tip": np.zeros((7, 2))}
+    save_recording(Recording(series), swing[0] / "series", "turn", 20.0)
+    with Image.open(animation.render(swing[0])) as film:
+        assert film.n_frames == 7
+
+
 def test_a_result_that_names_foreign_code_is_not_rendered(swing: tuple[Path, Experiment], tmp_path: Path) -> None:
     trap = tmp_path / "trap"
     foreign = ["pathlib.Path.touch", "dexrepro.storage.shutil.rmtree", "dexrepro.runner.redraw", "os.system"]
