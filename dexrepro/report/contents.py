@@ -121,7 +121,7 @@ class Contents:
             "answer": verdicts.answer(claims),
             "claims": claims,
             "figures": _with_claims(figures, claims),
-            "other_claims": [c for c in claims if not any(concerns(c["figure"], f["id"]) for f in figures)],
+            "other_claims": [c for c in claims if not any(relations.concerns(c["figure"], f["id"]) for f in figures)],
             "tables": [
                 self._table(identifier, title, place / "tables" / f"{identifier}.csv", target)
                 for identifier, title in experiment.tables.items()
@@ -275,13 +275,6 @@ def in_book_order(figures: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     return sorted(figures, key=place)
 
 
-def concerns(claimed: str, identifier: str) -> bool:
-    """Whether a claim about "2.8a" or "2.8, 2.9" is about the figure "2.8", and one about "2.8" about "2.8a"."""
-    parts = [part.strip() for part in claimed.replace(";", ",").split(",")]
-    panels = "abcdefgh"
-    return any(identifier in (part, part.rstrip(panels)) or identifier.rstrip(panels) == part for part in parts)
-
-
 def copy(source: Path, target: Path) -> None:
     """A hard link, or a copy on another file system."""
     try:
@@ -294,7 +287,7 @@ def _with_claims(figures: Sequence[dict[str, Any]], claims: Sequence[dict[str, A
     """Each claim stands beside the first figure it is about; the others only refer to it."""
     seen: set[str] = set()
     for figure in figures:
-        about = [claim for claim in claims if concerns(claim["figure"], figure["id"])]
+        about = [claim for claim in claims if relations.concerns(claim["figure"], figure["id"])]
         figure["claims"] = [claim for claim in about if claim["id"] not in seen]
         figure["mentioned"] = [claim for claim in about if claim["id"] in seen]
         seen |= {claim["id"] for claim in about}

@@ -51,6 +51,13 @@ def _case(metric: str) -> str:
     return ".".join(metric.split(".")[:2]) if metric.count(".") > 1 else metric
 
 
+def concerns(claimed: str, identifier: str) -> bool:
+    """Whether a claim about "2.8a" or "2.8, 2.9" is about the figure "2.8", and one about "2.8" about "2.8a"."""
+    parts = [part.strip() for part in claimed.replace(";", ",").split(",")]
+    panels = "abcdefgh"
+    return any(identifier in (part, part.rstrip(panels)) or identifier.rstrip(panels) == part for part in parts)
+
+
 def laws(node: Any) -> list[Any]:
     """Classes and functions that a configuration names by ``_target_``, each once, as far as they can be imported."""
     found: dict[str, Any] = {}

@@ -153,8 +153,9 @@ def _about_experiment(number: str, entry: dict[str, Any], asked: list[str], resu
         yield f"  result      {folder}"
     yield f"  cases       {', '.join(entry['cases'])}"
     _, metrics = _metrics(number, entry["name"], results)
-    concerned = [c for c in chapters.load(number).claims_of(entry["name"]) if not asked or _concerns(c, asked)]
-    for claim in concerned:
+    for claim in chapters.load(number).claims_of(entry["name"]):
+        if asked and not any(relations.concerns(claim.figure, identifier) for identifier in asked):
+            continue
         found = claim.evaluate(metrics)
         yield f"  {claim.id:<10}  {found.verdict}{_margin(found.margin)}: {claim.statement}"
     if not asked:
@@ -163,10 +164,6 @@ def _about_experiment(number: str, entry: dict[str, Any], asked: list[str], resu
             yield f"  parameter   {_parameter(row)}"
     yield from _code(number, entry["name"])
     yield f"  $ dexrepro run {f'figure={asked[0]}' if asked else f'chapter={number} only={experiment.name}'}"
-
-
-def _concerns(claim: Claim, asked: list[str]) -> bool:
-    return any(matches(claim.figure, identifier) or claim.figure == identifier for identifier in asked)
 
 
 def _erratum(word: str, results: Path) -> Iterator[str]:

@@ -15,7 +15,7 @@ import pytest
 from PIL import Image
 
 from dexrepro.plan import plan_chapter
-from dexrepro.report import contents, page, words
+from dexrepro.report import contents, page, relations, words
 from dexrepro.runner import run_plans
 
 
@@ -68,7 +68,7 @@ def test_the_scoreboard_counts_the_verdicts(report: Path) -> None:
     ],
 )
 def test_a_claim_stands_beside_the_figures_it_is_about(claimed: str, figure: str, expected: bool) -> None:
-    assert contents.concerns(claimed, figure) is expected
+    assert relations.concerns(claimed, figure) is expected
 
 
 def test_what_another_experiment_shows_stands_beside_a_claim_where_it_was_run(report: Path) -> None:
