@@ -108,8 +108,8 @@ def leaves(node: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
 def value_at(node: Any, dotted: str) -> Any:
     """The value of a dotted key in nested dictionaries and lists, None where there is none."""
     for part in dotted.split("."):
-        if isinstance(node, list) and part.isdigit():
-            node = node[int(part)]
+        if isinstance(node, list):
+            node = node[int(part)] if part.isdigit() and int(part) < len(node) else None
         else:
             node = node.get(part) if isinstance(node, Mapping) else None
     return node

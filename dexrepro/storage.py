@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from dexrepro.experiment import Recording
 
+LARGEST = 1 << 26  # bytes of a text that is read
 _PART = re.compile(r"\.(?P<target>.+)-[0-9a-f]{12}\.part")
 
 
@@ -124,12 +125,12 @@ def opened(path: Path) -> BinaryIO:
     return open(path, "rb")
 
 
-def read_text(path: Path, limit: int = 1 << 26) -> str:
-    """The content of a text file. Raises ValueError beyond ``limit`` bytes: nothing written here is so large."""
+def read_text(path: Path) -> str:
+    """The content of a text file. Raises ValueError beyond ``LARGEST`` bytes: nothing written here is so large."""
     with opened(path) as file:
-        content = file.read(limit + 1)
-    if len(content) > limit:
-        raise ValueError(f"it is larger than {limit >> 20} MB")
+        content = file.read(LARGEST + 1)
+    if len(content) > LARGEST:
+        raise ValueError(f"it is larger than {LARGEST >> 20} MB")
     return content.decode()
 
 
@@ -143,13 +144,13 @@ def read_yaml(path: Path) -> Any:
     return data
 
 
-def _count(data: Any, limit: int = 1_000_000) -> None:
-    """Raise ValueError where nested data, aliases written out, hold more than ``limit`` values."""
+def _count(data: Any) -> None:
+    """Raise ValueError where nested data, aliases written out, hold more than a million values."""
     todo, seen = [iter([data])], 0
     while todo:
         for item in todo[-1]:
             seen += 1
-            if seen > limit or len(todo) > 200:
+            if seen > 1_000_000 or len(todo) > 200:
                 raise ValueError("it is nested too deeply or stands for more than a million values")
             if isinstance(item, Mapping | list):
                 todo.append(iter(item.values() if isinstance(item, Mapping) else item))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from dexrepro.checks import value_at
 from dexrepro.config import resolved_block
 from dexrepro.provenance import Provenance, origin_of
 from dexrepro.report import symbols
@@ -53,9 +54,7 @@ def shown(origin: Provenance | None) -> dict[str, Any]:
 
 def value_of(node: Any, dotted: str) -> Any:
     """The value of a key in a composed configuration, a block in one line."""
-    for part in dotted.split("."):
-        element = isinstance(node, list) and part.isdigit() and int(part) < len(node)
-        node = node[int(part)] if element else node.get(part) if isinstance(node, Mapping) else None
+    node = value_at(node, dotted)
     if isinstance(node, Mapping):
         return ", ".join(f"{key}: {value}" for key, value in node.items() if key != "_target_")
     return node
