@@ -25,7 +25,7 @@ KEYS = {
     "tune.case": ("EXPERIMENT.CASE", "the case to be tuned"),
     "compare.case": ("EXPERIMENT.CASE", "the cases, with commas between them, whose law is replaced"),
     "draw.format": ("KIND", "pdf, png or svg, in results/figures/STYLE (of a changed run: STYLE/RUN)"),
-    "laws": ("FOLDER", "a folder with laws, which are to stand beside the book's"),
+    "laws": ("FOLDER|FILE", "laws of yours, which are to stand beside the book's"),
     "minimise": ("METRIC", "the metric of the case that is to be least"),
     "maximise": ("METRIC", "or the one that is to be greatest"),
     "budget": ("NUMBER", "runs (32)"),
