@@ -365,10 +365,10 @@ def check_own(values: Mapping[str, Any]) -> None:
         except Exception:
             continue
         if not hasattr(module, last):
-            file, own = str(getattr(module, "__file__", None)), Path(*name.split(".")).with_suffix(".py")
+            file, own = getattr(module, "__file__", None) or "built in", Path(*name.split(".")).with_suffix(".py")
             places = {(Path(folder) / own).resolve() for folder in sys.path} - {Path(file).resolve()}
             if hidden := [place for place in places if place.is_file()]:
-                raise InputError(f"{text}: '{name}' is a module of Python or of a package already; rename {hidden[0]}")
+                raise InputError(f"{text}: '{name}' is a module already ({file}); rename {hidden[0]}")
             names = [key for key, thing in vars(module).items() if getattr(thing, "__module__", None) == name]
             raise InputError(f"{text}: {file} has no '{last}'; {nearest(last, names)}")
         law = getattr(module, last)

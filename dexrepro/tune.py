@@ -322,8 +322,9 @@ def laws_in(place: str | Path, tell: Callable[[str], None] = lambda text: None) 
             module = importlib.import_module(file.stem)
         except Exception as error:
             raise InputError(f"{file} cannot be imported: {type(error).__name__}: {error}") from error
-        if not os.path.samefile(getattr(module, "__file__", None) or os.devnull, file):
-            raise InputError(f"'{file.stem}' is a module of Python or of a package already; rename {file}")
+        known = getattr(module, "__file__", None)
+        if not os.path.samefile(known or os.devnull, file):
+            raise InputError(f"'{file.stem}' is a module already ({known or 'built in'}); rename {file}")
         defined = {name: law for name, law in inspect.getmembers(module, inspect.isclass)
                    if law.__module__ == file.stem}  # fmt: skip
         laws = {name: law for name, law in defined.items() if getattr(law, "kind", None) in KINDS}

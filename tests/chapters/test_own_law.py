@@ -199,7 +199,7 @@ OWN = """class Mine:
         ("law_d.Mine", ("    def __call__(self, measured): return 0.0\n", ""), "it must have __call__.self, measured."),
         ("law_e.Mine", ("holding", "joint"), "it must have __call__.self, measured, desired."),
         ("law_f.Min", ("", ""), "law_f.Min: .*law_f.py has no 'Min'; did you mean 'Mine'"),
-        ("signal.Mine", ("", ""), "'signal' is a module of Python or of a package already; rename .*signal.py"),
+        ("signal.Mine", ("", ""), r"'signal' is a module already \(.+\); rename .*signal.py"),
         (
             "law_g.Mine",
             ("class", "from .law_f import Mine as Base\nclass"),
