@@ -107,7 +107,7 @@ def test_the_numbers_of_a_note_come_from_the_run() -> None:
 
 @pytest.mark.parametrize("number", chapters.numbers())
 def test_every_number_that_a_text_takes_from_a_run_is_stored(number: str) -> None:
-    """In notes of claims, errata, captions and alternative texts, which may name parameters, too."""
+    """In notes of claims, errata and their evidence, captions and alternative texts, which may name parameters, too."""
     chapter, metrics = chapters.load(number), stored_metrics(number)
     composed = compose_chapter(number)
     for experiment in chapter.experiments:
@@ -117,6 +117,7 @@ def test_every_number_that_a_text_takes_from_a_run_is_stored(number: str) -> Non
     texts += [claim.note for claim in chapter.claims]
     named = {name for text in texts for name in re.findall(r"\{(\w+(?:\.\w+)+)(?::[^{}]*)?\}", text)}
     assert not {name for name in named if metrics.get(name) is None}
+    assert {name for item in chapter.errata for name in item.evidence} <= metrics.keys()
     assert not [text for text in texts if re.search(r"\{\w+\.", filled(text, metrics))]
 
 

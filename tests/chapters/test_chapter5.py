@@ -8,7 +8,6 @@ import types
 import numpy as np
 import pytest
 
-from dexrepro import chapters
 from dexrepro.chapters.chapter5 import crossing, pen
 from dexrepro.chapters.chapter5.real_handwriting import experiment as real_handwriting
 from dexrepro.cli import main
@@ -16,23 +15,6 @@ from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config
 from dexrepro.robots.pen_arm import pen_arm_angles
-
-chapter5 = chapters.load("5")
-
-
-def test_every_claim_and_erratum_names_metrics_of_an_experiment_with_cases():
-    composed = compose_chapter("5")
-    cases = {e.name: set(experiment_cases(composed, e.name)) for e in chapter5.experiments}
-    names = [n for claim in chapter5.claims for n in claim.metrics] + [n for e in chapter5.errata for n in e.evidence]
-    for name in names:
-        experiment, _, rest = name.partition(".")
-        first, _, metric = rest.partition(".")
-        assert first in cases[experiment] or not metric, name  # without a case: from summarise
-
-
-def test_ids_are_unique():
-    for group in (chapter5.claims, chapter5.errata):
-        assert len({item.id for item in group}) == len(group)
 
 
 def test_paper_and_table_maps_are_undone():
@@ -151,25 +133,6 @@ def test_integrator_has_the_networks_effective_gain_and_its_rate_of_forgetting()
 def test_every_case_as_printed_takes_the_one_u():
     cases = experiment_cases(compose_chapter("5", ["bounded_tracking.u=0.3"]), "bounded_tracking")
     assert {cases[name]["law"]["robust_rate"] for name in ("printed", "printed_robust", "sign_robust")} == {0.3}
-
-
-@pytest.mark.parametrize("chapter", ["5", "6"])
-def test_a_switch_changes_what_its_erratum_names_and_nothing_else(chapter):
-    def leaves(value, path=()):
-        if isinstance(value, dict):
-            return {key: leaf for name, item in value.items() for key, leaf in leaves(item, (*path, name)).items()}
-        return {".".join(path): value}
-
-    for erratum in chapters.load(chapter).errata:
-        for experiment in {part.partition(".")[0] for part in erratum.switch.split()}:
-            named = {part.partition("=")[0].partition(".")[2] for part in erratum.switch.split()}
-            before = experiment_cases(compose_chapter(chapter), experiment)
-            after = experiment_cases(compose_chapter(chapter, erratum.switch.split()), experiment)
-            for case, values in before.items():
-                old, new = leaves(values), leaves(after[case])
-                changed = {key for key in old if old[key] != new[key]}
-                # A law's bound is the experiment's, by reference.
-                assert {key.removeprefix("law.") if "bound" in key else key for key in changed} <= named, erratum.id
 
 
 def test_claims_of_the_letters_are_tried_on_real_handwriting(tmp_path):

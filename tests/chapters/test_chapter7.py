@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shlex
 from typing import Any
 
@@ -178,18 +177,6 @@ def test_integral_action_holds_the_last_load_and_waits_while_the_torque_is_at_it
     assert torque(0.0) - rest == pytest.approx(np.full(3, 0.2), rel=1e-6)
     law.reset(still)
     assert torque(0.0) == pytest.approx(rest)
-
-
-@pytest.mark.parametrize("chapter", ["7", "8"])
-def test_a_switch_that_adds_a_case_merges_into_none_that_exists(chapter: str) -> None:
-    """Merged into another case it would run another erratum's printed form as well."""
-    shipped = compose_chapter(chapter)
-    for erratum in chapters.load(chapter).errata:
-        for experiment, case in re.findall(r"\+(\w+)\.cases\.(\w+)=", erratum.switch):
-            before = experiment_cases(shipped, experiment)
-            after = experiment_cases(compose_chapter(chapter, shlex.split(erratum.switch)), experiment)
-            assert set(after) - set(before) == {case}, erratum.id
-            assert all(after[name] == before[name] for name in before), erratum.id
 
 
 def test_the_relay_of_7_40_is_run_with_the_corrected_signs() -> None:

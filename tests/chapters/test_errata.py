@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from typing import Any
 
@@ -13,7 +14,7 @@ from dexrepro.claims import Erratum
 from dexrepro.config import compose_chapter, experiment_cases
 
 SWITCHED = [
-    (number, erratum) for number in ("1", "2", "3", "4") for erratum in chapters.load(number).errata if erratum.switch
+    (number, erratum) for number in chapters.numbers() for erratum in chapters.load(number).errata if erratum.switch
 ]
 
 
@@ -41,9 +42,14 @@ def test_a_switch_changes_the_keys_it_names_alone(
     keys = {word.lstrip("+").partition("=")[0] for word in words}
     now, before = resolved(number, words), shipped[number]
     changed = {name for name in now.keys() | before.keys() if now.get(name) != before.get(name)}
-    assert changed, f"{erratum.switch} changes nothing"
     parts = {part for key in keys for part in key.split(".")[-1:]}
-    assert not {name for name in changed if not parts & set(name.split(".")[2:])}
+    named = {name for name in changed if parts & set(name.split(".")[1:])}
+    assert named, f"{erratum.switch} changes nothing"
+    follow = {now.get(name) for name in named}  # by reference, under a name of their own
+    assert not {name for name in changed - named if now.get(name) not in follow}
     experiments = {key.partition(".")[0] for key in keys} - {"shared"}
     reached = {name.partition(".")[0] for name in changed}
-    assert not experiments or experiments <= reached
+    assert experiments <= reached
+    for experiment, case in re.findall(r"\+(\w+)\.cases\.(\w+)=", erratum.switch):
+        merged = [name for name in before if name.startswith(f"{experiment}.{case}.")]
+        assert not merged, "in a case that exists another erratum's printed form would run as well"

@@ -75,7 +75,6 @@ ERRATA = (
         "duration) or {barrier_anatomy.tau1_feedforward.half_gap_one:.0e} (1 s); the tracking gains do the work, and "
         "fixed steps pass over so thin a layer.",
         "Barrier weight H^2, or the discrete projection.",
-        switch="planar_constraint.cdmp.weight=one",
         evidence=(
             "barrier_anatomy.feedforward.half_gap_one",
             "barrier_anatomy.tau1_feedforward.half_gap_one",
