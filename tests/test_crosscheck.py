@@ -98,6 +98,12 @@ def test_the_table_keeps_the_last_comparison_of_each_experiment(tmp_path):
         crosscheck.stored(path)
 
 
+def test_where_no_arm_is_simulated_there_is_nothing_to_compare(command):
+    status, said = command("crosscheck")
+    assert (status, Path("results/crosscheck").exists()) == (cli.WRONG, False)
+    assert "none of these experiments simulates arms" in said
+
+
 def test_samples_of_another_engine_count_while_the_engines_agree(tmp_path, monkeypatch):
     for module in (crosscheck, study, baselines):
         monkeypatch.setattr(module, "baseline_dir", lambda: tmp_path / "shipped")

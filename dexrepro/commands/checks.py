@@ -89,10 +89,11 @@ def crosscheck_command(options: argparse.Namespace) -> int:
     from dexrepro.selection import selected
 
     numbers, only, results, workers, _ = selected(options.selection, "crosscheck")
-    target = crosscheck.table(results, options.update)
+    target, compared = crosscheck.table(results, options.update), 0
     for number in numbers:
         for item in crosscheck.run(number, only, results, workers):
             crosscheck.keep([item], target)
+            compared += 1
             known = [entry for entry in item.metrics if entry.spread]
             turned = [f"{key} {' under PyBullet, '.join(item.claims[key])} under MuJoCo" for key in item.turned]
             say(
@@ -100,6 +101,8 @@ def crosscheck_command(options: argparse.Namespace) -> int:
                 f"{sum(entry.matters for entry in known)} of the {len(known)} that a study has outside its range, too; "
                 f"{len(item.claims)} claims, {len(turned)} turn" + "".join(f"\n  {text}" for text in turned)
             )
+    if not compared:
+        raise InputError("none of these experiments simulates arms, so that no engine makes a difference")
     say(target)
     return OK
 
