@@ -8,7 +8,7 @@ import re
 import pytest
 
 from dexrepro import baselines, chapters, study
-from dexrepro.claims import BY_CONSTRUCTION, NOT_EVALUATED, Claim, Predicate, filled, less, robustness
+from dexrepro.claims import NOT_EVALUATED, Predicate, filled
 from dexrepro.config import compose_chapter, settings
 from dexrepro.report import verdicts
 
@@ -83,28 +83,6 @@ def test_a_claim_says_why_where_its_verdict_turns_within_the_tolerance_of_its_nu
     assert turning == {claim.id for claim in claims if claim.turns}
 
 
-def test_verdicts_of_every_kind() -> None:
-    def verdict(**values: object) -> str:
-        claim = Claim("C", "1", "a falls", less("e.a.x", 1.0), **values)
-        return claim.evaluate({"e.a.x": 0.5, "e.b.x": 2.0, "e.c.x": 0.7, "e.d.x": None}).verdict
-
-    holds, fails, undefined = less("e.c.x", 1.0), less("e.b.x", 1.0), less("e.d.x", 1.0)
-    assert verdict() == verdict(control=fails) == verdict(control=holds) == verdict(printed=holds) == "reproduced"
-    assert verdict(printed=fails) == verdict(printed=undefined) == "after correction"
-    assert verdict(control=holds, credits="the term") == "not attributed"
-    assert verdict(control=fails, credits="the term") == "reproduced"
-    assert verdict(readings={"another window": fails}) == "reading-dependent"
-    assert verdict(by_construction="the generator does it") == BY_CONSTRUCTION
-    assert Claim("C", "1", "a falls", fails).evaluate({"e.b.x": 2.0}).verdict == "not reproduced"
-    assert Claim("C", "1", "a falls", fails).evaluate({"e.b.x": None}).verdict == "not reproduced"
-    assert Claim("C", "1", "a falls", fails).evaluate({}).verdict == NOT_EVALUATED
-
-
-def test_the_numbers_of_a_note_come_from_the_run() -> None:
-    claim = Claim("C", "1", "a falls", less("e.a.x", 1.0), note="It is {e.a.x:.1f} mm, not {e.a.gone}.")
-    assert claim.evaluate({"e.a.x": 0.52}).note == "It is 0.5 mm, not ?."
-
-
 @pytest.mark.parametrize("number", chapters.numbers())
 def test_every_number_that_a_text_takes_from_a_run_is_stored(number: str) -> None:
     """In notes of claims, errata and their evidence, captions and alternative texts, which may name parameters, too."""
@@ -119,13 +97,3 @@ def test_every_number_that_a_text_takes_from_a_run_is_stored(number: str) -> Non
     assert not {name for name in named if metrics.get(name) is None}
     assert {name for item in chapter.errata for name in item.evidence} <= metrics.keys()
     assert not [text for text in texts if re.search(r"\{\w+\.", filled(text, metrics))]
-
-
-def test_what_a_study_shows() -> None:
-    assert robustness(26, 26) == "robust"
-    assert robustness(25, 25) == "open"
-    assert robustness(9, 16) == "fragile"
-    assert robustness(10, 16) == "open"
-    assert robustness(0, 8) == "fragile"
-    assert robustness(90, 100) == "open"
-    assert robustness(0, 0) == ""
