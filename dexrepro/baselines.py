@@ -69,6 +69,11 @@ class Baseline:
     tables: dict[str, dict[str, list[Any]]] | None = None
     free: dict[str, str] = field(default_factory=dict)
 
+    @property
+    def values(self) -> dict[str, float | None]:
+        """The metrics by name, without their tolerances."""
+        return {name: entry["value"] for name, entry in self.metrics.items()}
+
     @classmethod
     def of(cls, chapter: str, experiment: str) -> Baseline:
         """The baseline of an experiment, empty where there is none. Raises InputError where its file is damaged."""
@@ -91,6 +96,11 @@ class Baseline:
 def stored(chapter: str) -> dict[str, Baseline]:
     """The baseline of every experiment of a chapter, by its name."""
     return {item.name: Baseline.of(chapter, item.name) for item in chapters.load(chapter).experiments}
+
+
+def stored_values(chapter: str) -> dict[str, float | None]:
+    """The stored metrics of a whole chapter by name."""
+    return {name: value for baseline in stored(chapter).values() for name, value in baseline.values.items()}
 
 
 def _check_entry(name: str, entry: Mapping[str, Any]) -> None:

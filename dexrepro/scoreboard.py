@@ -18,9 +18,7 @@ WORDS = (ROBUST, FRAGILE, OPEN)  # what studies show of the claims that hold
 def _row(number: str) -> dict[str, Any]:
     """What a chapter has, its claims of the book by verdict, those severely tested, and the headline."""
     chapter, listed = chapters.load(number), chapter_listing(number)["experiments"]
-    stored = baselines.stored(number).values()
-    metrics = {name: entry["value"] for baseline in stored for name, entry in baseline.metrics.items()}
-    words = study.robustness_of(number)
+    metrics, words = baselines.stored_values(number), study.robustness_of(number)
     claims = [
         {**claim.evaluate(metrics).as_dict(), "robustness": words.get(claim.id, OPEN)}
         for claim in chapter.claims

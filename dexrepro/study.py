@@ -219,7 +219,7 @@ def confirm(chapter: str, experiment: str, results: Path, update: bool = False) 
         index: evaluate(chapter, experiment, index, {}, entries[index].get("engine", REFERENCE), cases)["cases"]
         for index, cases in runs.items()
     }
-    known = baselines.stored(chapter)[experiment].metrics
+    known = baselines.Baseline.of(chapter, experiment).metrics
     same = {
         case
         for case in old

@@ -76,7 +76,7 @@ def test_a_number_matters_where_it_leaves_its_tolerance_and_the_study():
 def test_only_what_differs_from_the_baseline_is_reported(tmp_path):
     arms, _ = plan("engine=mujoco")
     stored = Baseline.of("6", ARMS)
-    metrics = {name: entry["value"] for name, entry in stored.metrics.items()}
+    metrics = stored.values
     changed = next(name for name, value in metrics.items() if isinstance(value, float) and value)
     metrics[changed] *= 1.5
     (tmp_path / "metrics.json").write_text(json.dumps(metrics))

@@ -13,11 +13,6 @@ from dexrepro.config import compose_chapter, settings
 from dexrepro.report import verdicts
 
 
-def stored_metrics(number: str) -> dict[str, float | None]:
-    stored = baselines.stored(number).values()
-    return {name: entry["value"] for baseline in stored for name, entry in baseline.metrics.items()}
-
-
 @pytest.mark.parametrize("number", chapters.numbers())
 def test_every_claim_of_the_book_has_a_control_or_the_reason_why_none_can_exist(number: str) -> None:
     claims = [claim for claim in chapters.load(number).claims if claim.source == "book" and claim.predicate]
@@ -32,7 +27,7 @@ def test_every_statement_has_been_seen_to_fail_or_says_why_it_cannot(number: str
     credited, the verdict "not attributed" rests on just that.
     """
     studied = {key: row for item in study.stored(baselines.baseline_dir()) for key, row in item["claims"].items()}
-    metrics = stored_metrics(number)
+    metrics = baselines.stored_values(number)
     evaluated = [claim.evaluate(metrics).as_dict() for claim in chapters.load(number).claims if claim.predicate]
     never = verdicts.never_failed([{**item, "study": studied.get(item["id"])} for item in evaluated])
     assert not [item["id"] for item, reason in never if not reason]
@@ -41,7 +36,7 @@ def test_every_statement_has_been_seen_to_fail_or_says_why_it_cannot(number: str
 @pytest.mark.parametrize("number", chapters.numbers())
 def test_stored_verdicts_follow_from_stored_metrics(number: str) -> None:
     stored = {key: verdict for item in baselines.stored(number).values() for key, verdict in item.claims.items()}
-    metrics = stored_metrics(number)
+    metrics = baselines.stored_values(number)
     found = {claim.id: claim.evaluate(metrics).verdict for claim in chapters.load(number).claims if claim.predicate}
     assert {key: verdict for key, verdict in found.items() if verdict != NOT_EVALUATED and key in stored} == {
         key: verdict for key, verdict in stored.items() if found.get(key, NOT_EVALUATED) != NOT_EVALUATED
@@ -86,7 +81,7 @@ def test_a_claim_says_why_where_its_verdict_turns_within_the_tolerance_of_its_nu
 @pytest.mark.parametrize("number", chapters.numbers())
 def test_every_number_that_a_text_takes_from_a_run_is_stored(number: str) -> None:
     """In notes of claims, errata and their evidence, captions and alternative texts, which may name parameters, too."""
-    chapter, metrics = chapters.load(number), stored_metrics(number)
+    chapter, metrics = chapters.load(number), baselines.stored_values(number)
     composed = compose_chapter(number)
     for experiment in chapter.experiments:
         metrics |= settings(composed, experiment.name)

@@ -36,9 +36,7 @@ def chapter_listing(number: str) -> dict[str, Any]:
 
 def _listed(number: str) -> dict[str, Any]:
     chapter, composed = chapters.load(number), compose_chapter(number)
-    metrics = {
-        name: entry["value"] for item in baselines.stored(number).values() for name, entry in item.metrics.items()
-    }
+    metrics: dict[str, Any] = baselines.stored_values(number)
     for experiment in chapter.experiments:
         metrics |= settings(composed, experiment.name)
     return {

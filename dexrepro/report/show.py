@@ -113,8 +113,7 @@ def _metrics(number: str, name: str, results: Path) -> tuple[str, dict[str, Any]
     if (folder / "metrics.json").exists():
         check_result(folder, "metrics.json")
         return f"as run here, {folder}", read_json(folder / "metrics.json")
-    entries = baselines.Baseline.of(number, name).metrics
-    return "as stored with dexrepro", {key: entry["value"] for key, entry in entries.items()}
+    return "as stored with dexrepro", baselines.Baseline.of(number, name).values
 
 
 def _section(where: str) -> str:

@@ -82,7 +82,7 @@ def test_the_sensitivity_study_moves_as_the_figure_does():
 @pytest.mark.parametrize("case_", ["ready_only", "constant", "partner_only"])
 def test_waiting_and_assisting_fails_without_the_adjustable_weights(case_):
     claim = next(claim for claim in chapters.load("1").claims if claim.id == "C1.19")
-    stored = {name: entry["value"] for name, entry in baselines.Baseline.of("1", "ready_to_hold").metrics.items()}
+    stored = baselines.Baseline.of("1", "ready_to_hold").values
     other = {
         name.replace(f".{case_}.", ".adjustable."): value for name, value in stored.items() if f".{case_}." in name
     }

@@ -142,7 +142,7 @@ def test_the_follower_on_baxter_waits_for_contact_and_then_holds() -> None:
 
 def test_an_estimate_that_is_off_on_either_side_has_not_converged() -> None:
     claim = next(claim for claim in chapters.load("2").claims if claim.id == "C2.08")
-    stored = {name: entry["value"] for name, entry in baselines.Baseline.of("2", "movement_estimation").metrics.items()}
+    stored = baselines.Baseline.of("2", "movement_estimation").values
     assert claim.predicate is not None
     assert (claim.predicate.margin(stored) or 0) > 0
     for off in (0.05, -0.05):
