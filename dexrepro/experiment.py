@@ -11,7 +11,7 @@ import ast
 import importlib
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
@@ -122,9 +122,9 @@ class Figure:
 class Film:
     """An animation of one case: the arms, and beside them a measured quantity over time.
 
-    caption: what is seen, in one sentence. channel: what is drawn, times ``scale`` in the unit of ``label``; of a
-    vector its length. camera: a ``physics.rendering.Camera``. reference: a value to compare with, dashed.
-    span: the part of the run shown, (start, end) [s]; all of it by default.
+    caption: what is seen, in one sentence that is filled as a figure's. channel: what is drawn, times ``scale`` in the
+    unit of ``label``; of a vector its length. camera: a ``physics.rendering.Camera``. reference: key of the parameter
+    to compare with, dashed. span: the part of the run shown, (start, end) [s]; all of it by default.
     """
 
     case: str
@@ -133,7 +133,7 @@ class Film:
     channel: str
     label: str
     scale: float = 1.0
-    reference: float | None = None
+    reference: str | None = None
     span: tuple[float, float] | None = None
 
 
@@ -199,7 +199,8 @@ class Experiment:
 
     @property
     def film(self) -> Film | None:
-        return self._part("figures", "FILM", None)
+        film: Film | None = self._part("figures", "FILM", None)
+        return film and replace(film, caption=film.caption.replace("{.", f"{{{self.name}."))
 
     @property
     def units(self) -> Mapping[str, str]:

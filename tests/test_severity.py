@@ -87,6 +87,7 @@ def test_every_number_that_a_text_takes_from_a_run_is_stored(number: str) -> Non
         metrics |= settings(composed, experiment.name)
     texts = [text for item in chapter.errata for text in (item.summary, item.correction)]
     texts += [text for item in chapter.experiments for f in item.figures.values() for text in (f.caption, f.alt)]
+    texts += [item.film.caption for item in chapter.experiments if item.film]
     texts += [claim.note for claim in chapter.claims]
     named = {name for text in texts for name in re.findall(r"\{(\w+(?:\.\w+)+)(?::[^{}]*)?\}", text)}
     assert not {name for name in named if metrics.get(name) is None}

@@ -101,6 +101,8 @@ def texts_of(experiment: Experiment, number: str) -> Iterator[tuple[str, str]]:
     for identifier, figure in experiment.figures.items():
         yield from ((identifier, figure.caption), (identifier, figure.alt))
     yield from experiment.tables.items()
+    if experiment.film:
+        yield experiment.name, experiment.film.caption
     for claim in chapters.load(number).claims_of(experiment.name):
         for text in (
             claim.note,

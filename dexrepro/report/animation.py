@@ -14,6 +14,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from dexrepro.arrays import Array
 from dexrepro.case import live, refuse_foreign, targets
+from dexrepro.checks import value_at
 from dexrepro.config import compose_chapter
 from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Experiment, Film, Recording
@@ -116,7 +117,7 @@ def _frames(experiment: Experiment, config: Config, recording: Recording) -> Ite
         if experiment.function("stage"):
             recording = experiment.simulation.stage(world, recording, config)
         times = instants(recording, film.span if film else None, FRAMES)
-        plots = _plots(film, recording, times) if film and film.channel in recording else None
+        plots = _plots(film, config, recording, times) if film and film.channel in recording else None
         for instant in times:
             picture = Image.fromarray(world.snapshot(recording, instant, camera, SIZE))
             ImageDraw.Draw(picture).text((10, 8), f"t = {instant:.1f} s", fill=(20, 20, 20), font=font)
@@ -142,7 +143,7 @@ def _beside(picture: Image.Image, past: Image.Image, future: Image.Image, column
     return frame
 
 
-def _plots(film: Film, recording: Recording, shown: Array) -> tuple[Image.Image, Image.Image, Any]:
+def _plots(film: Film, config: Config, recording: Recording, shown: Array) -> tuple[Image.Image, Image.Image, Any]:
     """The watched quantity over time, coloured and pale, and the function from an instant to its column."""
     values = recording[film.channel]
     values = film.scale * (np.linalg.norm(values, axis=1) if values.ndim > 1 else values)
@@ -151,8 +152,8 @@ def _plots(film: Film, recording: Recording, shown: Array) -> tuple[Image.Image,
     with style.style():
         figure, axes = style.subplots(width=SIZE[0] / 125, height=SIZE[1] / 125, dpi=125)
         (curve,) = axes.plot(recording.time[inside], values[inside], linewidth=1.6)
-        if film.reference is not None:
-            axes.axhline(film.reference, **style.LINES["reference"])
+        if film.reference and (wanted := value_at(config, film.reference)) is not None:
+            axes.axhline(wanted, **style.LINES["reference"])
         axes.set(xlabel="Time [s]", ylabel=film.label, xlim=(shown[0], shown[-1]))
         axes.margins(y=0.12)
         for colour in (style.BOOK, "#D5DCE2"):

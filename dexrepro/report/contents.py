@@ -128,7 +128,7 @@ class Contents:
                 if (place / "tables" / f"{identifier}.csv").exists()
             ],
             "films": [
-                _film(path, experiment, target)
+                _film(path, experiment, target, numbers)
                 for path in sorted(place.glob("animation/*.gif"))
                 if path.with_suffix(".png").exists()
             ],
@@ -294,13 +294,14 @@ def _with_claims(figures: Sequence[dict[str, Any]], claims: Sequence[dict[str, A
     return list(figures)
 
 
-def _film(path: Path, experiment: Experiment, target: Path) -> dict[str, str]:
+def _film(path: Path, experiment: Experiment, target: Path, numbers: Mapping[str, Any]) -> dict[str, str]:
     for suffix in (".gif", ".png"):
         copy(path.with_suffix(suffix), target / f"film_{path.stem}{suffix}")
     film, link = experiment.film, f"files/{target.name}/film_{path.stem}"
+    caption = film.caption if film and film.case == path.stem else "The arms, from the recording."
     return {
         "case": path.stem,
-        "caption": film.caption if film and film.case == path.stem else "The arms, from the recording.",
+        "caption": filled(caption, numbers),
         "alt": f"The simulated arms, and {film.label} over time" if film else "The simulated arms",
         "gif": f"{link}.gif",
         "still": f"{link}.png",

@@ -48,7 +48,7 @@ def swing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Experi
         (home / f"{name.rpartition('.')[2]}.py").touch()
     simulation, pictures = sys.modules["swing.experiment"], sys.modules["swing.figures"]
     simulation.scene, simulation.stage = scene, stage
-    pictures.FILM = Film("turn", "The arm turns.", CAMERA, "tip", "Distance [mm]", scale=1e3, span=(0.5, 2.0))
+    pictures.FILM = Film("turn", "The arm turns.", CAMERA, "tip", "Distance [mm]", 1e3, "wanted", (0.5, 2.0))
     experiment = Experiment("swing", home)
     monkeypatch.setattr(chapters, "numbers", lambda: ("90",))
     monkeypatch.setattr(chapters, "load", lambda number: types.SimpleNamespace(experiments=(experiment,)))
@@ -62,7 +62,8 @@ def swing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Experi
     entry = {"status": "finished", "steps": 40, "simulated": 2.0, "wall": 0.1}
     run = {"chapter": "90", "experiment": "swing", "differs": [], "packages": {}, "wall": 0.2}
     write_json(folder / "run.json", run | {"cases": {"still": entry, "turn": entry}})
-    (folder / "config.yaml").write_text(yaml.safe_dump({"cases": {"still": {}, "turn": {}}}))
+    cases = {case: {"wanted": 900.0} for case in ("still", "turn")}
+    (folder / "config.yaml").write_text(yaml.safe_dump({"cases": cases}))
     return folder, experiment
 
 

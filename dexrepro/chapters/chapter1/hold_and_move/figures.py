@@ -43,8 +43,9 @@ UNITS = {
 }  # fmt: skip
 TABLES = {"T1.B": "Force error after the 8th second along three trajectories, beside the book's nine numbers"}
 FILM = Film(
-    "t1_proposed", "Two arms lift the ball, tilt and swing it and put it down while the force stays at 15 N.", VIEW,
-    "force", "Contact force [N]", reference=15.0,
+    "t1_proposed",
+    "Two arms lift the ball, tilt and swing it and put it down while the force stays at {.desired_force:g} N.", VIEW,
+    "force", "Contact force [N]", reference="desired_force",
 )  # fmt: skip
 LAWS = {"proposed": "book", "passive": "rival", "fixed": "plain"}
 

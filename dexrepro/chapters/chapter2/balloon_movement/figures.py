@@ -32,7 +32,7 @@ UNITS = {"reference": "m"}
 TABLES = {"T2.2": "Force errors of the Baxter experiment: printed and tuned gains, two balloons"}
 FILM = Film(
     "proposed", "The follower, which feels only the force, holds the balloon along a line and a lap of a circle.",
-    balloon_pair.VIEW, "object.force", "Holding force [N]", reference=10.0,
+    balloon_pair.VIEW, "object.force", "Holding force [N]", reference="desired_force",
 )  # fmt: skip
 
 

@@ -23,8 +23,8 @@ FIGURES = {
 }
 UNITS = {"reference": "m"}
 FILM = Film(
-    "off_100", "The follower touches the balloon 0.1 m off the line, finds the line and holds 10 N.", balloon_pair.VIEW,
-    "object.force", "Holding force [N]", reference=10.0,
+    "off_100", "The follower touches the balloon {.cases.off_100.discrepancy:g} m off the line, finds the line and "
+    "holds {.desired_force:g} N.", balloon_pair.VIEW, "object.force", "Holding force [N]", reference="desired_force",
 )  # fmt: skip
 
 
