@@ -308,9 +308,7 @@ def run(
             f"engine = {engine} is not allowed for a study of {experiment}: its claims are not known to have the same "
             f"verdicts under both engines; ask: dexrepro crosscheck chapter={chapter} only={experiment}"
         )
-    target = summary_file(experiment, results, update)
-    if only:
-        target = _folder(results) / "cases" / f"{experiment}-{digest_of([*only])[:10]}.json"
+    target = summary_file(experiment, results, update, only)
     for folder in (target.parent, _folder(results)):
         folder.mkdir(parents=True, exist_ok=True)
     if samples is not None:
@@ -442,8 +440,11 @@ def _write_lines(path: Path, entries: Sequence[Mapping[str, Any]]) -> None:
         write_text(path, text)
 
 
-def summary_file(experiment: str, results: Path, shipped: bool = False) -> Path:
-    """Where the summary of a study is kept: among the user's results, or beside the baselines that are shipped."""
+def summary_file(experiment: str, results: Path, shipped: bool = False, only: Cases = ()) -> Path:
+    """Where the summary of a study, or of one of some cases ``only``, is kept: among the user's results, or beside the
+    baselines that are shipped."""
+    if only:
+        return _folder(results) / "cases" / f"{experiment}-{digest_of([*only])[:10]}.json"
     return (baseline_dir() / "study" if shipped else _folder(results)) / f"{experiment}.json"
 
 

@@ -134,3 +134,9 @@ def test_jobs_of_a_study_share_its_samples(shell: Shell, toy: Path) -> None:
     lines = (toy / "results/studies/decay.jsonl").read_text().splitlines()
     assert sorted(json.loads(line)["index"] for line in lines) == list(range(6))
     assert "jobs = x is not allowed" in shell(f"{study} jobs=x").stderr
+
+
+def test_the_summary_of_a_study_by_jobs_is_said_once(shell: Shell, toy: Path) -> None:
+    done = shell(f"PYTHONPATH=. {sys.executable} -m dexrepro study chapter=90 'case=gain*' samples=2 jobs=2")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("decay: results/studies/cases/decay-") == 1

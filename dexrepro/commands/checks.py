@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -17,6 +18,7 @@ from dexrepro.keys import SELECTION
 
 if TYPE_CHECKING:
     from dexrepro.baselines import ChapterReport
+    from dexrepro.study import Cases
 
 
 @command(
@@ -115,34 +117,45 @@ def crosscheck_command(options: argparse.Namespace) -> int:
 )  # fmt: skip
 def study_command(options: argparse.Namespace) -> int:
     """``dexrepro study chapter=N [claim=ID] [only=EXPERIMENT] [samples=N] [hours=H] [jobs=N hydra/launcher=...]``."""
+    if any(text.startswith(("jobs=", "hydra")) for text in options.selection):
+        return _study_jobs(options)
+    return _study(options.selection, options.update, options.confirm)
+
+
+def _study(words: Sequence[str], update: bool = False, confirm: bool = False, shown: bool = True) -> int:
     from dexrepro import study
     from dexrepro.config import check_engine
     from dexrepro.physics.engine import default
     from dexrepro.selection import selected
 
-    if any(text.startswith(("jobs=", "hydra")) for text in options.selection):
-        return _study_jobs(options)
-    numbers, only, results, workers, values = selected(options.selection, "study")
+    numbers, only, results, workers, values = selected(words, "study")
     samples, hours = _samples(values.get("samples")), _hours(values.get("hours"))
     check_engine(engine := values.get("engine", default()))
     for number in numbers:
         for name in study.experiments_of(number, only, values.get("claim")):
-            if options.confirm:
-                carried, other = study.confirm(number, name, results, options.update)
+            if confirm:
+                carried, other = study.confirm(number, name, results, update)
                 differ = f"; other numbers than before: {', '.join(other)}" if other else ""
                 say(f"{name}: {carried} cases of samples carried over{differ}")
                 continue
             try:
-                cases = study.cases_of(number, name, values["case"].strip("[]")) if "case" in values else ()
-                if cases and options.update:
+                cases = _cases(number, name, values)
+                if cases and update:
                     raise InputError(f"case = {values['case']} is not allowed with --update: what is shipped is whole")
-                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=options.update,
+                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=update,
                                  engine=engine, only=cases)  # fmt: skip
             except study.SamplesFailed as error:
                 warn(error)
                 return FAILED
-            _print_study(name, path, results)
+            if shown:
+                _print_study(name, path, results)
     return OK
+
+
+def _cases(number: str, name: str, values: Mapping[str, str]) -> Cases:
+    from dexrepro import study
+
+    return study.cases_of(number, name, values["case"].strip("[]")) if "case" in values else ()
 
 
 def _samples(text: str | None) -> int | None:
@@ -167,14 +180,18 @@ def _study_jobs(options: argparse.Namespace) -> int:
     words = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
     numbers, only, folder, _, _ = selected(words, "study")
     _samples(values.get("samples")), _hours(values.get("hours"))
-    names = [name for number in numbers for name in study.experiments_of(number, only, values.get("claim"))]
+    made = [
+        (name, study.summary_file(name, folder, only=_cases(number, name, values)))
+        for number in numbers
+        for name in study.experiments_of(number, only, values.get("claim"))
+    ]
     selection = ",".join(json.dumps(text) for text in words)
     results = [text for text in words if text.startswith("results=")]
     status = launch(["-m", f"+job=range({jobs})", f"+selection=[{selection}]", *results, *launcher], _study_job)
     if options.update and status == OK:
-        return study_command(argparse.Namespace(selection=words, update=True, confirm=False))
-    for name in names:
-        if (path := study.summary_file(name, folder)).exists():
+        return _study(words, update=True)
+    for name, path in made:
+        if path.exists():
             _print_study(name, path, folder)
     return status
 
@@ -183,7 +200,7 @@ def _study_job(config: Any) -> None:
     from dexrepro.sweep import JobFailed, enter_launch_folder
 
     enter_launch_folder()
-    if study_command(argparse.Namespace(selection=["workers=1", *config.selection], update=False, confirm=False)) != OK:
+    if _study(["workers=1", *config.selection], shown=False) != OK:
         raise JobFailed("a process was killed; the same command completes what is missing")
 
 
@@ -192,7 +209,7 @@ def _print_study(name: str, path: Path, results: Path) -> None:
     from dexrepro.storage import read_json
 
     summary = read_json(path)
-    drawing = studies.save(summary, results / "studies" / f"{name}.svg")
+    drawing = studies.save(summary, results / "studies" / f"{path.stem}.svg")
     say(f"{name}: {path}, drawn in {drawing}")
     for claim, row in summary["claims"].items():
         interval = f"{100 * row['low']:.0f} to {100 * row['high']:.0f} %"
