@@ -95,7 +95,7 @@ class Contents:
         run, study = read_json(place / "run.json"), self._study(experiment.name, target)
         files = []
         for path in sorted([*place.glob("*.json"), place / "config.yaml", *place.glob("series/*")]):
-            copy(path, target / path.name)
+            _link(path, target / path.name)
             files.append({"name": path.name, "path": f"files/{target.name}/{path.name}"})
         used = leaves({experiment.name: read_yaml(place / "config.yaml")})
         numbers = {**dict(used), **self.metrics}
@@ -169,7 +169,7 @@ class Contents:
             "noticed": verdicts.noticed(shown),
             "often": verdicts.often(shown),
             "beside": "" if "?" in beside else beside,  # its numbers are not there
-            "where": re.sub(r"^(?=\d)", "Sect. ", entry["where"]),
+            "where": words.section(entry["where"]),
             "errata": touching,
             "equations": equations.numbers(text),
             "cases": list(dict.fromkeys(part[1] for part in names if len(part) > 2)),
@@ -230,7 +230,7 @@ class Contents:
 
     def _figure(self, identifier: str, caption: str, alt: str, place: Path, target: Path) -> dict[str, Any]:
         stem = file_stem(identifier)
-        copy(place / "figures" / f"{stem}.png", target / f"{stem}.png")
+        _link(place / "figures" / f"{stem}.png", target / f"{stem}.png")
         _thumbnail(place / "figures" / f"{stem}.png", target / f"{stem}.webp")
         drawing = _light((place / "figures" / f"{stem}.svg").read_text("utf-8"))
         (target / f"{stem}.svg").write_text(drawing, encoding="utf-8")
@@ -248,7 +248,7 @@ class Contents:
 
     def _table(self, identifier: str, title: str, path: Path, target: Path) -> dict[str, Any]:
         frame = read_table(path)
-        copy(path, target / path.name)
+        _link(path, target / path.name)
         (target / f"{identifier}.tex").write_text(
             frame.to_latex(index=False, float_format="%.4g", escape=True), encoding="utf-8"
         )
@@ -275,7 +275,7 @@ def in_book_order(figures: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     return sorted(figures, key=place)
 
 
-def copy(source: Path, target: Path) -> None:
+def _link(source: Path, target: Path) -> None:
     """A hard link, or a copy on another file system."""
     try:
         os.link(source, target)
@@ -296,7 +296,7 @@ def _with_claims(figures: Sequence[dict[str, Any]], claims: Sequence[dict[str, A
 
 def _film(path: Path, experiment: Experiment, target: Path, numbers: Mapping[str, Any]) -> dict[str, str]:
     for suffix in (".gif", ".png"):
-        copy(path.with_suffix(suffix), target / f"film_{path.stem}{suffix}")
+        _link(path.with_suffix(suffix), target / f"film_{path.stem}{suffix}")
     film, link = experiment.film, f"files/{target.name}/film_{path.stem}"
     caption = film.caption if film and film.case == path.stem else "The arms, from the recording."
     return {

@@ -15,7 +15,7 @@ from dexrepro.config import compose_chapter, experiment_cases, resolved_block, s
 from dexrepro.errors import InputError, nearest
 from dexrepro.plan import matches
 from dexrepro.provenance import provenance
-from dexrepro.report import equations, parameters, relations, sources, verdicts
+from dexrepro.report import equations, parameters, relations, sources, verdicts, words
 from dexrepro.report.damage import check_result
 from dexrepro.report.listing import chapter_listing
 from dexrepro.storage import read_json
@@ -62,7 +62,7 @@ def _about_claim(number: str, claim: Claim, results: Path) -> Iterator[str]:
     row = next((s["claims"].get(claim.id) for s in study.stored(results) if s["experiment"] == name), None)
     shown: dict[str, Any] = claim.evaluate(metrics, settings(composed, name) if name else {}).as_dict()
     shown |= {"study": row, "robustness": verdicts.robustness(row)}
-    place = ", ".join(filter(None, [f"Fig. {claim.figure}" if claim.figure else "", _section(claim.where), name]))
+    place = ", ".join(filter(None, [f"Fig. {claim.figure}" if claim.figure else "", words.section(claim.where), name]))
     yield f"{claim.id}  {shown['verdict']}{_margin(shown['margin'])}  ({place or 'no experiment'})"
     yield f"  {claim.statement}{'' if claim.source == 'book' else '  (ours, not the book)'}"
     if claim.not_testable:
@@ -114,10 +114,6 @@ def _metrics(number: str, name: str, results: Path) -> tuple[str, dict[str, Any]
         check_result(folder, "metrics.json")
         return f"as run here, {folder}", read_json(folder / "metrics.json")
     return "as stored with dexrepro", baselines.Baseline.of(number, name).values
-
-
-def _section(where: str) -> str:
-    return re.sub(r"^(?=\d)", "Sect. ", where)
 
 
 def _margin(value: float | None) -> str:

@@ -34,6 +34,11 @@ def prose(text: str) -> Markup:
     return Markup("").join([*parts, escape(text[end:])])
 
 
+def section(where: str) -> str:
+    """A place in the book: "Sect. 2.4" of "2.4"; another text as it is."""
+    return re.sub(r"^(?=\d)", "Sect. ", where)
+
+
 def unit(text: str) -> Markup:
     """A unit with its exponents raised: "kg m^2"."""
     return Markup(re.sub(r"\^(-?[\d.]+|\w)", r"<sup>\1</sup>", str(escape(text))))
