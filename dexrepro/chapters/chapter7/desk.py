@@ -29,7 +29,6 @@ from dexrepro.robots.arm import Pose, Shape
 from dexrepro.robots.pen_arm import DARK, gripper, pen_arm, pen_arm_angles, pen_arm_tip
 
 BOARD = (0.13, 0.21)  # m, depth and width; printed in Sect. 7.4
-ARM_BASE = (-0.09, 0.105, 0.10)  # m, from the front left corner of the board
 CUBE = 0.018  # m, edge of the carried cube
 WIDE = Camera(target=(0.14, 0.0, -0.02), distance=0.42, yaw=62.0, pitch=-20.0)
 JAWS = tuple(Shape("box", (0.022, 0.004, 0.016), Pose((-0.002, side, 0.0)), DARK) for side in (-0.012, 0.012))
