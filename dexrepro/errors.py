@@ -21,6 +21,8 @@ def refused(key: str, value: object, must: str) -> InputError:
 
 def folder_named(name: str, key: str = "results") -> Path:
     """A folder as the user names it, "~" being the home. Raises InputError where no folder can have the name."""
+    if not name:
+        raise refused(key, "''", "be the name of a folder")
     try:
         path = Path(name).expanduser()
         with suppress(FileNotFoundError, NotADirectoryError):

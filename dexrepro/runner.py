@@ -220,6 +220,7 @@ def assemble(plan: Plan) -> list[Job]:
         write_json(folder / "run.json", asdict(_run_entry(plan, entries, series)))
         present(plan.chapter, experiment, folder)
         _keep_animations(plan.folder, folder)
+        _keep_own(plan.folder, folder)
         sync(folder)
     _prune(plan)
     return []
@@ -232,6 +233,15 @@ def _keep_animations(old: Path, new: Path) -> None:
         if recording.exists() and recording.stat().st_mtime <= path.stat().st_mtime:
             (new / "animation").mkdir(exist_ok=True)
             copy(path, new / "animation" / path.name)
+
+
+def _keep_own(old: Path, new: Path) -> None:
+    """Take over what somebody has put beside the files of a result, such as notes."""
+    for path in old.glob("*"):
+        if path.is_dir() and path.name not in ("animation", *os.listdir(new)):
+            shutil.copytree(path, new / path.name, symlinks=True, copy_function=copy)
+        elif path.is_file() and not (new / path.name).exists():
+            copy(path, new / path.name)
 
 
 def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config) -> None:

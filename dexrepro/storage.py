@@ -35,7 +35,10 @@ def whole_folder(target: Path) -> Iterator[Path]:
     """A new folder that replaces ``target`` when the block ends well and leaves no trace when it does not.
 
     A lock beside it, which the system frees when this process dies, tells others that it is being worked on.
+    Raises OSError where ``target`` is a file, which is somebody's own.
     """
+    if target.exists() and not target.is_dir():
+        raise FileExistsError(errno.EEXIST, "it is no folder", str(target))
     target.parent.mkdir(parents=True, exist_ok=True)
     folder = target.parent / f".{target.name}-{uuid.uuid4().hex[:12]}.part"
     old = folder.with_suffix(".old")

@@ -90,6 +90,22 @@ def test_a_film_stays_while_its_recording_stays(toy: Path) -> None:
     assert not (folder / "animation").exists()
 
 
+def test_what_somebody_puts_into_a_result_stays(toy: Path) -> None:
+    folder = run().folders["decay"]
+    (folder / "notes.md").write_text("mine")
+    (folder / "photos").mkdir()
+    (folder / "photos/rig.jpg").write_text("mine")
+    run(force=True)
+    assert (folder / "notes.md").read_text() == (folder / "photos/rig.jpg").read_text() == "mine"
+
+
+def test_a_file_where_a_result_is_to_be_stays_and_is_named(toy: Path) -> None:
+    (toy / "results/chapter90").mkdir(parents=True)
+    (toy / "results/chapter90/decay").write_text("mine")
+    assert "it is no folder: 'results/chapter90/decay'" in run().failures["decay"]
+    assert (toy / "results/chapter90/decay").read_text() == "mine"
+
+
 def test_an_override_leaves_the_results_of_the_book_alone(toy: Path) -> None:
     run()
     before = (toy / "results/chapter90/decay/metrics.json").read_bytes()

@@ -14,6 +14,7 @@ import jinja2
 
 from dexrepro import __version__, chapters, crosscheck, study
 from dexrepro.claims import TIE
+from dexrepro.errors import InputError
 from dexrepro.report import equations, explorer, studies, symbols, verdicts, words
 from dexrepro.report.contents import Contents, in_book_order
 from dexrepro.report.damage import check_result
@@ -27,12 +28,16 @@ KINDS = {
     "slip": "Typesetting, or possibly the text extraction.",
 }
 HERE = Path(__file__).parent
+SEARCH = "search-index.js"
 Book = list[dict[str, Any]]
 
 
 def build(results: Path) -> Path:
-    """Write ``results/report/`` and return the path of its index.html."""
-    with whole_folder(results / "report") as folder:
+    """Write ``results/report/`` and return the path of its index.html. Raises InputError where it is somebody's own."""
+    report = results / "report"
+    if report.is_dir() and any(report.iterdir()) and not (report / SEARCH).exists():
+        raise InputError(f"{report} holds files that are no report of ours; move them, or name another results=")
+    with whole_folder(report) as folder:
         _Report(results, folder).write()
     return results / "report" / "index.html"
 
@@ -111,7 +116,7 @@ class _Report:
             for experiment in chapter["experiments"]:
                 self._write_series(experiment["series"])
         self._index_search(book)
-        (self.folder / "search-index.js").write_text(words.script("window.SEARCH_INDEX", self.search), encoding="utf-8")
+        (self.folder / SEARCH).write_text(words.script("window.SEARCH_INDEX", self.search), encoding="utf-8")
 
     # ------------------------------------------------------------------------------------------------------ the search
 

@@ -256,3 +256,18 @@ def test_check_takes_experiments_of_several_chapters(toy_result: Path, toy_book:
     assert "no results of other" in command("check only=other,decay")[1]
     assert "unknown experiment 'othr'" in command("check only=[othr,decay]")[1]
     assert "chapter 90:" in command("check only=decay,needs_more")[1]
+
+
+@pytest.mark.parametrize(
+    "words", ["report results=results", "report results=", "draw results=", "study only=decay results="]
+)
+def test_a_folder_that_is_somebody_elses_stays(toy_result: Path, command: Command, words: str) -> None:
+    """Such as a thesis in a folder called report, where a shell's variable for the results is empty, too."""
+    for folder in (Path("report"), Path("results/report")):
+        folder.mkdir()
+        (folder / "index.html").write_text("mine")
+    status, said = command(words)
+    assert status == 2
+    assert "results/report holds files that are no report" in said or "results = '' is not allowed" in said
+    assert whole(Path("report")) == whole(Path("results/report")) == {"index.html": b"mine"}
+    assert not Path("studies").exists()
