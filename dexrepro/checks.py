@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from dexrepro.errors import InputError, refused
+
+FILES = ("demonstrations", "reactions", "csv", "file", "path", "files", "obstacle_files", "block_file")
+"""Keys whose values are names of files."""
 
 
 def check_words(config: Mapping[str, Any], words: Mapping[str, tuple[str, ...]], where: str) -> None:
@@ -64,6 +68,18 @@ def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: st
                     dotted = f"{where}.{key}.{place}".rstrip(".")
                     shown = "null" if item is None else repr(item)
                     raise refused(dotted, shown, "be a number")
+
+
+def check_files(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
+    """Refuse what names no file, or none that every case can read, where the shipped configuration has none."""
+    for key in [key for key, book in leaves(shipped) if book is None and key.rpartition(".")[2] in FILES]:
+        given = value_at(config, key)
+        for place, name in [*leaves(given)] or [("", given)]:
+            dotted = f"{where}.{key}.{place}".rstrip(".")
+            if name is not None and not (isinstance(name, str) and name):
+                raise refused(dotted, repr(name), "name a file or files of yours, or be null")
+            if name and os.path.exists(name) and not (os.path.isfile(name) or os.path.isdir(name)):
+                raise refused(dotted, name, "be a file that can be read again, no pipe or device")
 
 
 _A_LINK = ("lengths", "masses", "inertias", "centres")  # one value a link each

@@ -21,7 +21,7 @@ from typing import Any
 
 from dexrepro import chapters, closure
 from dexrepro.case import targets
-from dexrepro.checks import check_lengths, check_types, check_words, differences, leaves, same
+from dexrepro.checks import FILES, check_files, check_lengths, check_types, check_words, differences, leaves, same
 from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block
 from dexrepro.control.contract import KINDS, takes
 from dexrepro.errors import InputError, folder_named, nearest, refused
@@ -200,6 +200,7 @@ def _differs(
     for case, values in cases.items():
         check_types(values, book.get(case, next(iter(book.values()))), name)
         check_lengths(values, book.get(case, next(iter(book.values()))), name)
+        check_files(values, book.get(case, next(iter(book.values()))), name)
     own = {_key(text): text for text in differences(block, resolved_block(shipped, name))}
     listed = differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
     reached: dict[str, str] = {}  # what changes in a case, by its key there; the first case that has it
@@ -310,7 +311,8 @@ def own_digest(values: Mapping[str, Any]) -> str:
     """
     paths = own_modules(values)
     for key, text in leaves(values):
-        if isinstance(text, str) and "." in text and key.rpartition(".")[2] != "_target_":
+        named = "." in str(text) or {*FILES} & {*key.split(".")}
+        if isinstance(text, str) and named and key.rpartition(".")[2] != "_target_":
             name = os.path.expanduser(text)
             paths.update(path for found in (name, *glob.glob(name)) if (path := Path(found)).is_file())
     if any(text.startswith("__main__.") for text in targets(values)):

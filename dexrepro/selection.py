@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dexrepro import chapters
-from dexrepro.checks import is_whole
+from dexrepro.checks import FILES, is_whole
 from dexrepro.config import (
     SETTINGS,
     as_written,
@@ -24,9 +24,6 @@ from dexrepro.config import (
 from dexrepro.errors import InputError, existing_folder, folder_named, nearest, refused
 from dexrepro.keys import KEYS, SELECTION, TAKEN
 from dexrepro.plan import select
-
-FILES = ("demonstrations", "csv", "file", "path", "files", "obstacle_files", "block_file")
-"""Keys whose values are names of files."""
 
 
 class Selection(NamedTuple):

@@ -179,6 +179,17 @@ def test_every_parameter_that_is_a_word_declares_the_words_there_are(chapter: st
         ("1", "+force_tracking.cases.mine={motion: sines}", "force_tracking.motion = sines"),
         ("1", "shared.planar.lengths=[0.5,0.3]", "force_tracking.arm: lengths has 2, masses has 3 values"),
         ("3", "fixed_opening.centre=[1,2]", "is not allowed: it must have 3 values"),
+        (
+            "5",
+            "letter_accuracy.demonstrations=",
+            "letter_accuracy.demonstrations = '' is not allowed: it must name a f",
+        ),
+        ("5", "letter_accuracy.demonstrations=[]", "letter_accuracy.demonstrations = [] is not allowed"),
+        ("5", "letter_accuracy.demonstrations=[a.csv,5]", "letter_accuracy.demonstrations.1 = 5 is not allowed"),
+        ("5", "style_transformation.demonstrations={w: 5}", "style_transformation.demonstrations.w = 5 is not allowed"),
+        ("6", "planar_skill.demonstrations.files=true", "planar_skill.demonstrations.files = True is not allowed"),
+        ("5", "letter_accuracy.demonstrations=/dev/full", "it must be a file that can be read again, no pipe or devi"),
+        ("own", "scene.leader.csv=", "scene.leader.csv = '' is not allowed: it must name a file or files of yours"),
     ],
 )
 def test_an_unknown_word_or_a_wrong_length_is_refused(chapter: str, override: str, sentence: str) -> None:

@@ -62,19 +62,19 @@ def test_what_is_there_is_not_run_again_unless_forced(toy: Path) -> None:
 def test_a_changed_file_of_the_user_changes_the_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
-    for name in ("path1.csv", "users_law.py", "users_helper.py"):
+    for name in ("path1.csv", "letter", "users_law.py", "users_helper.py"):
         Path(name).write_text("1")
     config = {
-        "demonstrations": ["path?.csv"],
+        "demonstrations": ["path?.csv", "letter"],
         "law": {"_target_": "users_law.Law"},
         "kind": "dmp",
         "other": "no.such.Law",
     }
     keys = [own_digest(config)]
-    for name in ("path1.csv", "path2.csv", "users_law.py", "users_helper.py"):
+    for name in ("path1.csv", "path2.csv", "letter", "users_law.py", "users_helper.py"):
         Path(name).write_text("2")
         keys.append(own_digest(config))
-    assert len(set(keys)) == 5
+    assert len(set(keys)) == 6
     Path("unrelated.csv").write_text("3")
     assert own_digest(config) == keys[-1]
 
