@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import os
 import re
 import warnings
 import xml.etree.ElementTree as xml
@@ -22,6 +23,7 @@ from dexrepro.text import decoded
 TURNING = ("revolute", "continuous")
 FOREIGN = {"mujoco": "an MJCF file of MuJoCo", "sdf": "an SDF file of Gazebo", "COLLADA": "a COLLADA mesh"}
 MESHES = (".stl", ".obj", ".dae")  # what the engine reads
+NEEDED = ("value", "ixx", "iyy", "izz", "size", "radius", "length")  # of an element that is there, as in ROS
 LARGEST = 10.0  # m; what is longer in an arm's file is likely to be in another unit
 ROUNDING = 0.05
 """How far an inertia may be from a rigid body's and still be read: what its largest principal moment exceeds the sum of
@@ -46,13 +48,14 @@ def from_urdf(
     pictures and touch nothing. An inertia within :data:`ROUNDING` of a rigid body's becomes one.
     Raises ValueError with one sentence where the file cannot be used; warns with one where it was mended.
     """
-    if len(base) not in (3, 6):
-        raise ValueError(
-            f"base = {[*base]} is not allowed: it must be x, y, z [m], or these with roll, pitch, yaw [rad]"
-        )
+    if not _is_base(base):
+        raise ValueError(f"base = {base} is not allowed: it must be x, y, z [m], or these with roll, pitch, yaw [rad]")
+    if not isinstance(packages, Mapping | None):
+        raise ValueError(f"packages = {packages} is not allowed: it must be names with folders, {{robot: ../robot}}")
+    file = Path(os.path.expanduser(str(path)))
     try:
-        tree = _Tree(_parsed(Path(path).expanduser()), Path(path).expanduser(), packages or {})
-        arm = tree.arm(end, root, base)
+        tree = _Tree(_parsed(file), file, {name: str(folder) for name, folder in (packages or {}).items()})
+        arm = tree.arm(str(end), None if root is None else str(root), base)  # YAML makes a number of a link named 5
     except FileNotFoundError:
         raise ValueError(f"there is no URDF file '{path}'") from None
     except OSError as error:
@@ -62,6 +65,14 @@ def from_urdf(
     if tree.mended:
         warnings.warn(f"URDF file '{path}': {'; '.join(tree.mended)}", stacklevel=2)
     return arm
+
+
+def _is_base(base: object) -> bool:
+    """Whether these are three or six numbers."""
+    try:
+        return np.array(base, dtype=float).shape in ((3,), (6,)) and not isinstance(base[0], str)  # type: ignore[index]
+    except (TypeError, ValueError):
+        return False
 
 
 def _parsed(path: Path) -> xml.Element:
@@ -365,7 +376,7 @@ def _place(node: xml.Element | None, attribute: str) -> str:
 
 
 def _floats(node: xml.Element | None, attribute: str, default: str) -> tuple[float, ...]:
-    text = default if node is None else node.get(attribute, default)
+    text = default if node is None else node.get(attribute, "" if attribute in NEEDED else default)
     try:
         values = tuple(map(float, text.split()))
         bad = math.isnan if node is None or node.tag == "limit" else lambda value: not math.isfinite(value)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -60,12 +61,34 @@ def test_dynamics_and_end_point_are_those_of_the_file(path: Path) -> None:
     assert forward(arm, q)[0] == pytest.approx(tip, abs=1e-9)
 
 
-@pytest.mark.parametrize("base", [(), (0, 0), (0, 0, 0, 1)])
-def test_a_base_has_three_or_six_numbers(path: Path, base: tuple[int, ...]) -> None:
+@pytest.mark.parametrize("base", [(), (0, 0), (0, 0, 0, 1), True, None, "000", ["a", "b", "c"], [[0, 0, 0]]])
+def test_a_base_has_three_or_six_numbers(path: Path, base: Any) -> None:
     with pytest.raises(
         ValueError, match=r"base = .* is not allowed: it must be x, y, z .m., or these with roll, pitch"
     ):
         from_urdf(str(path), "tip", base=base)
+
+
+def test_a_link_may_be_called_by_a_number_as_yaml_reads_it(path: Path) -> None:
+    arm = from_urdf(str(path), "tip", root="base")
+    path.write_text(URDF.replace('"tip"', '"5"').replace('"base"', '"1"'))
+    assert from_urdf(str(path), 5, root=1) == arm  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ({"path": None}, "there is no URDF file 'None'"),
+        ({"path": "~nobody-of-this-name/a.urdf"}, "there is no URDF file '~nobody"),
+        ({"end": 5}, "it has no link '5'"),
+        ({"end": ["tip"]}, "it has no link '..tip"),
+        ({"packages": ["a"]}, "packages = ..a.. is not allowed: it must be names with folders"),
+        ({"packages": {"a": 5}}, "packages.a = 5 is not allowed: there is no such folder"),
+    ],
+)
+def test_what_is_no_name_gets_one_sentence(path: Path, words: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ValueError, match=sentence):
+        from_urdf(**{"path": str(path), "end": "tip", **words})
 
 
 def test_limits_and_base_are_those_given(path: Path) -> None:
@@ -141,6 +164,9 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
         (("0.1 0.1 0.2", "0.1 -0.1 0.2"), 'line 1: <box size="0.1 -0.1 0.2"> of link .one. has a negative size'),
         (("<robot", BOMB), "it is no XML file: limit on input amplification"),
         (('value="2"', 'value="0,2"'), 'line 1: <mass value="0,2"> does not hold one number'),
+        (('<mass value="1"/>', "<mass>1</mass>"), 'line 1: <mass value=""> does not hold one number'),
+        (('<mass value="2"/><inertia ixx', '<mass value="2"/><inertia Ixx'), '<inertia ixx=""> does not hold one'),
+        (('<box size="0.1 0.1 0.2"/>', '<cylinder radius="0.1"/>'), '<cylinder length=""> does not hold one number'),
         (('value="2"', 'value="inf"'), '<mass value="inf"> does not hold one number'),
         (('xyz="0.1 0 0"', 'xyz="0.1, 0, 0"'), '<origin xyz="0.1, 0, 0"> does not hold 3 numbers parted by blanks'),
         (('xyz="0.1 0 0"', 'xyz="inf 0 0"'), '<origin xyz="inf 0 0"> does not hold 3 numbers'),
