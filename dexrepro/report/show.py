@@ -202,9 +202,14 @@ def _equation(word: str, results: Path) -> Iterator[str]:
 
 
 def _set(word: str, results: Path) -> Iterator[str]:
-    """A parameter by its key, or by the end of it, and a symbol by how the configuration writes it."""
+    """A parameter by its key or the end of it, those of a block, a symbol by how the configuration writes it."""
+    experiment = word.partition(".")[0]
     for number in chapters.numbers():
         composed, origins = compose_chapter(number), provenance(number)
+        inside = "." in word and word not in origins and experiment in chapters.names(number)
+        for row in parameters.table(experiment, composed, origins, {}) if inside else ():
+            if f"{row['key']}.".startswith(f"{word}."):  # also what it inherits
+                yield f"{_parameter(row)}  (chapter {number})"
         for key in [key for key in origins if word in (key, key.partition(".")[2]) or key.endswith(f".{word}")]:
             row = {"key": key, "value": parameters.value_of(composed, key), **parameters.shown(origins[key])}
             yield f"{_parameter(row)}  (chapter {number})"

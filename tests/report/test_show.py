@@ -36,6 +36,8 @@ def test_a_claim_is_shown_with_verdict_control_study_parameters_lines_and_comman
         ("Eq. (2.32)", ["Equation (2.32), Sect. 2.3.3", r"\frac{1}{k}", "holding_reference.py:", "ImpedanceReference"]),
         ("k_o", ["movement_estimation.stiffness = k_o = [25, 35, 45] N/m  [printed 2.4.1.2]"]),
         ("movement_estimation.stiffness", ["k_o = [25, 35, 45] N/m"]),
+        ("letter_accuracy.unit", ["letter_accuracy.unit = None -  [chosen of lengths in your files"]),  # inherited
+        ("letter_accuracy.dmp", ["letter_accuracy.dmp.stiffness = K = 400", "letter_accuracy.dmp.samples = 1001"]),
         ("ImpedanceReference", ["Eq. (2.32)", "used by ", "holding_comparison"]),
         ("movement_estimation", ["cases ", "parameter ", "C2.11", "2.7  "]),
         ("E2.01", ["E2.01", "written in"]),
