@@ -6,6 +6,7 @@ import argparse
 import logging
 import os
 import re
+import shutil
 import signal
 import sys
 from collections.abc import Sequence
@@ -52,6 +53,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if isinstance(error, BrokenPipeError):  # who reads the output has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return FAILED
+        if isinstance(error, shutil.Error):  # of many files; the reason of the first
+            error = InputError(f"cannot copy files: {error.args[0][0][2]}")
         if isinstance(error, OSError):  # a full or write-protected disk, an unreadable file
             error = InputError(f"{error.filename or 'cannot read or write a file'}: {error.strerror or error}")
         if not isinstance(error, InputError):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -125,6 +126,7 @@ def test_a_result_that_cannot_be_drawn_is_named_and_stays(
         ("draw results=nowhere", "results = nowhere is not allowed: there is no such folder"),
         ("report results=nowhere", "results = nowhere is not allowed"),
         ("draw only=decay results=.", "there is no such result in ."),
+        ("diff a b --html metrics.json", "--html = metrics.json is not allowed: it must be the name of a page"),
         ("draw figure=90.77", "unknown figure '90.77'"),
         ("check workers=two", "workers = two is not allowed"),
         ("render case=plain", "of which experiment?"),
@@ -154,6 +156,17 @@ def test_a_file_that_cannot_be_written_is_named(
     monkeypatch.setattr("dexrepro.report.page.whole_folder", full)
     assert cli.main(["report"]) == 2
     assert capsys.readouterr().err == "dexrepro: results/report: No space left on device\n"
+
+
+def test_a_folder_that_cannot_be_copied_is_named_by_its_first_file(
+    result: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise shutil.Error([(name, name, f"[Errno 28] No space left on device: '{name}'") for name in ("a.js", "b.js")])
+
+    monkeypatch.setattr("dexrepro.report.page.whole_folder", full)
+    assert cli.main(["report"]) == 2
+    assert capsys.readouterr().err == "dexrepro: cannot copy files: [Errno 28] No space left on device: 'a.js'\n"
 
 
 def test_check_of_one_experiment_needs_no_other(toy: Path) -> None:

@@ -184,6 +184,8 @@ def diff_command(options: argparse.Namespace) -> int:
     from dexrepro.report.compare import compare, write_page
 
     if options.html:
+        if options.html.suffix.lower() not in (".html", ".htm"):  # perhaps a file that is to be kept
+            raise refused("--html", options.html, "be the name of a page, such as two.html")
         write_page(options.a, options.b, options.html)
         say(options.html)
         return OK
