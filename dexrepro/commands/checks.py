@@ -91,6 +91,7 @@ def crosscheck_command(options: argparse.Namespace) -> int:
     from dexrepro.selection import selected
 
     numbers, only, results, workers, _ = selected(options.selection, "crosscheck")
+    _refuse_own(numbers, options.update)
     target, compared = crosscheck.table(results, options.update), 0
     for number in numbers:
         for item in crosscheck.run(number, only, results, workers):
@@ -129,6 +130,7 @@ def _study(words: Sequence[str], update: bool = False, confirm: bool = False, sh
     from dexrepro.selection import selected
 
     numbers, only, results, workers, values = selected(words, "study")
+    _refuse_own(numbers, update)
     samples, hours = _samples(values.get("samples")), _hours(values.get("hours"))
     check_engine(engine := values.get("engine", default()))
     for number in numbers:
@@ -158,6 +160,14 @@ def _cases(number: str, name: str, values: Mapping[str, str]) -> Cases:
     return study.cases_of(number, name, values["case"].strip("[]")) if "case" in values else ()
 
 
+def _refuse_own(numbers: Sequence[str], update: bool) -> None:
+    """Refuse to put among what is shipped what is about chapters of the user's."""
+    from dexrepro import chapters
+
+    if update and (own := [number for number in numbers if number != chapters.OWN and chapters.is_added(number)]):
+        raise InputError(f"--update renews what is shipped, and chapter {own[0]} is yours: leave --update out")
+
+
 def _samples(text: str | None) -> int | None:
     return None if text is None else whole_number("samples", text, 1, 1024)
 
@@ -179,6 +189,7 @@ def _study_jobs(options: argparse.Namespace) -> int:
     launcher = [f"{key}={value}" for key, value in values.items() if key.startswith("hydra")]
     words = [f"{key}={value}" for key, value in values.items() if not key.startswith("hydra")]
     numbers, only, folder, _, _ = selected(words, "study")
+    _refuse_own(numbers, options.update)
     _samples(values.get("samples")), _hours(values.get("hours"))
     made = [
         (name, study.summary_file(name, folder, only=_cases(number, name, values)))

@@ -132,6 +132,20 @@ def test_a_selection_that_selects_nothing_is_named(
     assert whole(toy_result) == before
 
 
+@pytest.mark.parametrize(
+    "words", ["study samples=1", "study --confirm", "study jobs=1 samples=1", "crosscheck only=decay"]
+)
+def test_what_is_shipped_is_not_renewed_by_what_is_the_users(
+    toy: Path, command: Command, monkeypatch: pytest.MonkeyPatch, words: str
+) -> None:
+    for module in ("study", "crosscheck"):
+        monkeypatch.setattr(f"dexrepro.{module}.baseline_dir", lambda: toy / "shipped")
+    status, said = command(f"{words} --update")
+    assert status == 2
+    assert "--update renews what is shipped, and chapter 90 is yours" in said
+    assert not (toy / "shipped").exists()
+
+
 def typed(toy: Path, line: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """A command line in a shell, in the folder of the toy."""
     env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
