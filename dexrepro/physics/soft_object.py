@@ -35,7 +35,7 @@ class Cushion:
 
         The branches relax where there is a gap, which is a negative compression.
         """
-        compression = compression * (compression > 0.0)
+        compression = compression * (compression > 0.0)  # type: ignore[assignment]  # as wide as numpy says
         self.fast_state = self.fast_state + self.fast_share * (compression - self.fast_state)
         self.slow_state = self.slow_state + self.slow_share * (compression - self.slow_state)
         branches = self.fast * (compression - self.fast_state) + self.slow * (compression - self.slow_state)
