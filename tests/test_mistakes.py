@@ -68,10 +68,10 @@ def test_null_still_turns_a_number_off_that_is_no_quantity(toy: Path) -> None:
     ],
 )
 def test_a_file_of_the_user_that_is_no_yaml_is_named(toy: Path, content: bytes, sentence: str) -> None:
-    (toy / "mine/own").mkdir(parents=True)
-    (toy / "mine/own/bad.yaml").write_bytes(content)
+    (toy / "mine $=1/own").mkdir(parents=True)
+    (toy / "mine $=1/own/bad.yaml").write_bytes(content)
     with pytest.raises(InputError) as caught:
-        run_command(["--config-dir", "mine", "+own=bad"])
+        run_command(["--config-dir", "mine $=1", "+own=bad"])
     assert sentence in str(caught.value)
     assert "\n" not in str(caught.value)
 

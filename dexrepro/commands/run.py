@@ -43,7 +43,8 @@ def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
     from dexrepro.selection import for_hydra, quoted
 
-    arguments = [quoted(argument) for argument in arguments]
+    folder = ("--config-dir", "-cd")  # what follows is a name as it is
+    arguments = [word if last in folder else quoted(word) for last, word in zip(["", *arguments], arguments)]
     extra_dir, overrides = _config_dir_option(arguments)
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
         given = [text for text in overrides if not text.startswith("-") and "=" in text]
