@@ -27,7 +27,7 @@ FIGURES = {
         "Multiplications of the update and of solving anew, and their difference on two numbers of kernels.",
     ),
 }
-TABLES = {"T5.K": "Largest relative error of the updated pseudo-inverse by kind of added columns"}
+TABLES = {"T5.K": "Largest relative error of the updated pseudo-inverse by kind of added columns; 1e-9 stands for less, too"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
@@ -83,6 +83,6 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     if "lemma" not in recordings:
         return {}
     frame = recordings["lemma"].frames["lemma"]
-    table = frame.groupby(["kind", "reading"])[["error", "fit"]].max().reset_index()
+    table = frame.groupby(["kind", "reading"])[["error", "fit"]].max().clip(lower=1e-9).reset_index()
     names = {"kind": "added columns", "error": "error of the pseudo-inverse [-]", "fit": "error of the fit [-]"}
     return {"T5.K": table.rename(columns=names)}
