@@ -222,7 +222,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "success_low": low,
         "success_high": high,
         "opening_error_max": float(table.opening_error.max()),
-        "good_grasps": int((table.truly != "bad").sum()),
+        "good_grasps": int(table.truly.isin(("safe", "unsafe")).sum()),
         "scenes_with_good_grasp": int((table.possible > 0).sum()),
         "touched": int((table.contact_time.fillna(0) > 0).sum()),
     }
