@@ -27,7 +27,7 @@ FIGURES = {
         "Multiplications of the update and of solving anew, and their difference on two numbers of kernels.",
     ),
 }
-TABLES = {"T5.K": "Largest relative error of the updated pseudo-inverse by kind of added columns; 1e-9 stands for less, too"}
+TABLES = {"T5.K": "Largest relative error (at least 1e-9) of the updated pseudo-inverse by kind of added columns"}
 
 
 def draw(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawings:
