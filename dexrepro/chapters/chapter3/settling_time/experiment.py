@@ -111,11 +111,11 @@ def _tuned(plant: ErrorDynamics, config: Config, directions: Array) -> tuple[lis
         e2 = secant(errors, first, *config.powers) * errors
         rest = secant(e2, [0.0, *damped], *config.powers)
         largest = float(np.min((limit - np.abs(errors)) / np.abs(e2) - rest))
-        for share in config.used:
+        for share in config.used if largest > 0 else ():
             second = [largest * share, *damped]
             runs = [plant.settle(e, first, second) for e in errors]
             longest = float(np.max([run[0] for run in runs]))
-            if max(run[2] for run in runs) <= limit * (1 + 1e-9) and longest < best and largest > 0:
+            if max(run[2] for run in runs) <= limit * (1 + 1e-9) and longest < best:
                 best, found = longest, (first, second)
     return found
 
