@@ -179,11 +179,7 @@ def test_every_parameter_that_is_a_word_declares_the_words_there_are(chapter: st
         ("1", "+force_tracking.cases.mine={motion: sines}", "force_tracking.motion = sines"),
         ("1", "shared.planar.lengths=[0.5,0.3]", "force_tracking.arm: lengths has 2, masses has 3 values"),
         ("3", "fixed_opening.centre=[1,2]", "is not allowed: it must have 3 values"),
-        (
-            "5",
-            "letter_accuracy.demonstrations=",
-            "letter_accuracy.demonstrations = '' is not allowed: it must name a f",
-        ),
+        ("5", "letter_accuracy.demonstrations=", "demonstrations = '' is not allowed: it must name a file or files"),
         ("5", "letter_accuracy.demonstrations=[]", "letter_accuracy.demonstrations = [] is not allowed"),
         ("5", "letter_accuracy.demonstrations=[a.csv,5]", "letter_accuracy.demonstrations.1 = 5 is not allowed"),
         ("5", "style_transformation.demonstrations={w: 5}", "style_transformation.demonstrations.w = 5 is not allowed"),

@@ -58,7 +58,8 @@ CLAIMS = (
         "from 1 rad.",
         less(".tuned.settling_1", ".tuned_linear.settling_1"),
         note="After {.tuned.settling_1:.3f} and {.tuned_linear.settling_1:.3f} s, with K11 of {.tuned.k11:.3g} and "
-        "{.tuned_linear.k11:.3g}; a K21 each that just needs the torque of the printed gains.",
+        "{.tuned_linear.k11:.3g}, and {.tuned.torque_1:.0f} and {.tuned_linear.torque_1:.0f} N m; the printed gains "
+        "need {.printed.torque_1:.0f}.",
     ),
     fig_3_a(
         "C3.18",
