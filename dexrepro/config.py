@@ -440,8 +440,8 @@ def _names(composed: Mapping[str, Any]) -> dict[str, Any]:
 def _resolve(names: Mapping[str, Any], experiment: str, block: Mapping[str, Any]) -> dict[str, Any]:
     """A block with every interpolation replaced by what it refers to.
 
-    ``${dotted.name}`` standing alone, as all of conf/ has it, is looked up here, 50 times faster than by OmegaConf;
-    whatever else OmegaConf's grammar knows is left to OmegaConf.
+    ``${dotted.name}`` or ``${list.0}`` standing alone, as all of conf/ has it, is looked up here, 50 times faster than
+    by OmegaConf; whatever else OmegaConf's grammar knows is left to OmegaConf.
     """
     names = {**names, experiment: block}
     try:
@@ -479,7 +479,10 @@ def _looked_up(node: Any, names: Mapping[str, Any], within: tuple[str, ...]) -> 
     for part in match[1].split("."):
         if isinstance(target, str) and _PLAIN.fullmatch(target):
             target = _looked_up(target, names, (*within, match[1]))
-        if not isinstance(target, Mapping) or part not in target:
+        if isinstance(target, list) and part.isdecimal() and int(part) < len(target):
+            target = target[int(part)]
+        elif isinstance(target, Mapping) and part in target:
+            target = target[part]
+        else:
             raise _NotPlainError
-        target = target[part]
     return _looked_up(target, names, (*within, match[1]))

@@ -103,17 +103,28 @@ def test_interpolations_mean_what_omegaconf_says_they_mean() -> None:
 
 @pytest.mark.parametrize(
     ("value", "expected"),
-    [("${a.b}", 2), ("${c.b}", 2), ("${chain}", 2), ("x${a.b}", "x2"), ("${a}", {"b": 2}), ("${oc.select:a.z,5}", 5)],
-)
+    [
+        ("${a.b}", 2), ("${c.b}", 2), ("${chain}", 2), ("${l.1}", 4), ("${l.0.b}", 3), ("${a}", {"b": 2}),
+        ("x${a.b}", "x2"), ("${oc.select:a.z,5}", 5),
+    ],
+)  # fmt: skip
 def test_interpolations_of_every_kind(value: str, expected: object) -> None:
-    composed = {"a": {"b": 2}, "c": "${a}", "chain": "${c.b}", "e": {"value": value}}
+    composed = {"a": {"b": 2}, "c": "${a}", "chain": "${c.b}", "l": [{"b": 3}, 4], "e": {"value": value}}
     assert resolved_block(composed, "e") == {"value": expected}
 
 
-@pytest.mark.parametrize(("value", "word"), [("${nowhere.x}", "nowhere"), ("${e.value}", "e")])
+@pytest.mark.parametrize("chapter", CHAPTERS)
+def test_the_books_interpolations_are_all_looked_up_fast(chapter: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    composed = compose_chapter(chapter)
+    monkeypatch.setattr("omegaconf.OmegaConf.create", None)
+    for experiment in chapters.load(chapter).experiments:
+        experiment_cases(composed, experiment.name)
+
+
+@pytest.mark.parametrize(("value", "word"), [("${nowhere.x}", "nowhere"), ("${e.value}", "e"), ("${l.2}", r"l\.2")])
 def test_an_interpolation_that_leads_nowhere_is_refused(value: str, word: str) -> None:
     with pytest.raises(InputError, match=word):
-        resolved_block({"e": {"value": value}}, "e")
+        resolved_block({"l": [1, 2], "e": {"value": value}}, "e")
 
 
 def test_cases_that_differ_in_case_alone_are_refused() -> None:
