@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dexrepro import chapters
+from dexrepro import baselines, chapters
 from dexrepro.case import live
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.chapters.chapter7.fuzzy_generalisation import experiment as fuzzy_generalisation
@@ -184,3 +184,12 @@ def test_the_relay_of_7_40_is_run_with_the_corrected_signs() -> None:
     case = experiment_cases(compose_chapter("7", shlex.split(erratum.switch)), "impedance_tracking")["as_printed"]
     assert case["law"]["printed"] == []
     assert case["law"]["impedance"]["switching_gain"] == 100.0
+
+
+def test_what_the_printed_law_fails_at_the_corrected_one_does_from_the_same_start() -> None:
+    """C7.28: a displaced start alone makes more torque travel than a smooth run, whatever the sign of the estimate."""
+    (claim,) = (c for c in chapters.load("7").claims if c.id == "C7.28")
+    assert claim.printed
+    stored = baselines.stored_values("7")
+    corrected = {name: stored[name.replace("displaced_printed", "displaced")] for name in claim.printed.metrics}
+    assert (claim.printed.margin(stored) or 0) < 0 < (claim.printed.margin(corrected) or 0)

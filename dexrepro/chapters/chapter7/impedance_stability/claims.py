@@ -12,7 +12,7 @@ CLAIMS = (
         every(greater(".gain10.stable", 0.5), less(".gain45.stable", 0.5), within(".limit_ratio", 0.85, 1.15)),
         control=less(".exact_model.stable", 0.5),
         credits="modelling and measuring errors",
-        printed=greater(".displaced_printed.stable", 0.5),
+        printed=greater(".displaced_printed.finished", 0.5),
         where="7.3.3",
         note="Too large for the sampling period, which no error of model or sensing is needed for: an exact model "
         "without friction is unstable as well (torque travel {.exact_model.torque_travel:.0f} N m "
