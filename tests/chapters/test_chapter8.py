@@ -6,7 +6,7 @@ import importlib
 import numpy as np
 import pytest
 
-from dexrepro import baselines
+from dexrepro import baselines, chapters
 from dexrepro.case import generator, live
 from dexrepro.chapters.chapter8 import task
 from dexrepro.chapters.chapter8.circle_tracking import experiment as circle_tracking
@@ -154,6 +154,17 @@ def test_the_gripper_stands_above_the_sponge_and_presses_it():
 def test_the_printed_control_rate_is_unstable_on_this_model():
     recording, config = run("sponge", "at_50_hz", duration=1.0)
     assert sponge.measure(recording, config)["stopped_at"] < 0.6
+
+
+def test_with_the_printed_sign_of_the_gain_the_reference_runs_away_inside_the_bounds():
+    """C8.12 says what ends the run: no error has met its bound when the arm can follow no longer."""
+    recording, config = run("unknown_object", "plus")
+    assert recording.status.startswith("diverged")
+    assert np.all(np.abs(recording["error"]) < 0.5 * np.array(config.bound))
+    assert recording["reference"][-1, 0] < config.object.surface - 0.3
+    (claim,) = (c for c in chapters.load("8").claims if c.id == "C8.12")
+    assert "diverges" in claim.note
+    assert "violated" not in claim.note
 
 
 def test_a_variant_that_turns_a_comparison_around_is_marked():
