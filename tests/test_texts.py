@@ -151,6 +151,15 @@ def test_no_caption_title_note_or_label_types_a_number_of_a_run_or_a_parameter(n
     assert not found, "\n".join(map(str, found))
 
 
+@pytest.mark.parametrize("number", chapters.numbers())
+def test_a_sentence_has_a_number_where_it_has_a_unit(number: str) -> None:
+    """Brackets about a unit belong to axes, columns and docstrings."""
+    chapter = chapters.load(number)
+    texts = [(claim.id, text) for claim in chapter.claims for text in (claim.statement, claim.note, claim.beside)]
+    texts += [(item.id, text) for item in chapter.errata for text in (item.summary, item.correction)]
+    assert not [pair for pair in texts if re.search(r" \[(?:m|cm|mm|s|ms|N|N m|rad|1/s)\]", pair[1])]
+
+
 def test_numbers_are_told_from_equations_sections_and_placeholders() -> None:
     text = "By (6.3), Sect. 4.5 and T4.S, after {e.a.x:.1f} s: 12 of 20 in 0.5 or 3 % and 5 to 6 mm in Cases 1 and 2."
     assert numbers(text) == [(20, 1), (0.5, 0.01), (3, 0.01), (5, 1e-3), (6, 1e-3)]

@@ -111,7 +111,8 @@ CLAIMS = (
         "No knowledge of the environment is needed: the gain is learned with the surface found by touch.",
         every(less(".soft.surface_error", 0.1), less(".soft.gain_error_x", 0.01)),
         control=less(".absolute.gain_error_x", 0.01),
-        note="The surface position is needed and comes from the first contact force [mm]; with "
+        note="The surface position is needed and comes from the first contact force, to "
+        "{.soft.surface_error:.2g} mm; with "
         "{.noise.surface.1:g} m of error K_x is {.soft.surface_low_gain_x:.3f} or "
         "{.soft.surface_high_gain_x:.3f} N/m in place of {.soft.gain_x:.3f}.",
     ),
