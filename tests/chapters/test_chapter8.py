@@ -141,6 +141,17 @@ def test_the_arm_learns_the_optimal_gain_of_an_object_it_knows_nothing_of():
     assert recording["gain"][-1] == pytest.approx(best, rel=0.01)
 
 
+def test_an_object_whose_gain_was_not_learned_is_no_object_with_a_small_error():
+    cases = {name: {"object": {"stiffness": k}} for name, k in (("soft", 10), ("object_5", 5), ("object_20", 20))}
+    config = Config.of({"object": {"stiffness": 10}, "cases": cases})
+    good = {"gain_error_x": 0.001, "gain_error_s": 0.002}
+    assert unknown_object.summarise({"soft": good, "object_5": good}, config)["worst_gain_error"] == 0.002
+    for lost in ({"bound_used": 1.0}, {**good, "gain_error_s": None}):
+        assert unknown_object.summarise({"soft": good, "object_5": good, "object_20": lost}, config) == {
+            "worst_gain_error": None
+        }
+
+
 def test_the_gripper_stands_above_the_sponge_and_presses_it():
     recording, config = run("sponge", "lqr", duration=2.4)
     assert recording["arm.tip"][0] == pytest.approx([0.77, -0.27, 0.35], abs=5e-5)

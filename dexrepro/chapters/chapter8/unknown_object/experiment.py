@@ -184,11 +184,8 @@ def objects(config: Config) -> list[str]:
 
 
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
-    """Largest relative error of the learned gain over all objects."""
-    errors = [
-        error
-        for case in objects(config)
-        for error in (metrics.get(case, {}).get(key) for key in ("gain_error_x", "gain_error_s"))
-        if error is not None
-    ]
-    return {"worst_gain_error": max(errors) if errors else None}
+    """Largest relative error of the learned gain over all objects that were met; None where one of them taught none."""
+    runs = [metrics[case] for case in objects(config) if case in metrics]
+    errors = [values.get(key) for values in runs for key in ("gain_error_x", "gain_error_s")]
+    known = [error for error in errors if error is not None]
+    return {"worst_gain_error": max(known) if known and len(known) == len(errors) else None}
