@@ -193,3 +193,11 @@ def test_what_the_printed_law_fails_at_the_corrected_one_does_from_the_same_star
     stored = baselines.stored_values("7")
     corrected = {name: stored[name.replace("displaced_printed", "displaced")] for name in claim.printed.metrics}
     assert (claim.printed.margin(stored) or 0) < 0 < (claim.printed.margin(corrected) or 0)
+
+
+def test_the_bound_of_a_claim_on_the_estimation_stands_in_its_statement() -> None:
+    bounds = {"C7.33": ("0.1", "a tenth"), "C7.33b": ("0.01", "a hundredth")}
+    for claim in chapters.load("7").claims:
+        factor, words = bounds.get(claim.id, ("", ""))
+        assert factor in str(claim.predicate)
+        assert words in claim.statement
