@@ -141,6 +141,15 @@ def test_the_arm_learns_the_optimal_gain_of_an_object_it_knows_nothing_of():
     assert recording["gain"][-1] == pytest.approx(best, rel=0.01)
 
 
+def test_a_bound_that_is_violated_at_once_is_a_bound_that_is_violated():
+    recording, config = run("unknown_object", "soft", start=[0.125, 0.211], duration=1.0)
+    metrics = unknown_object.measure(recording, config)
+    assert recording.status.startswith("error bound of axis y violated")
+    assert metrics["violated_at"] < 0.1
+    assert metrics["bound_used"] == 1.0
+    assert metrics["touched_at"] is None
+
+
 def test_an_object_whose_gain_was_not_learned_is_no_object_with_a_small_error():
     cases = {name: {"object": {"stiffness": k}} for name, k in (("soft", 10), ("object_5", 5), ("object_20", 20))}
     config = Config.of({"object": {"stiffness": 10}, "cases": cases})

@@ -116,7 +116,7 @@ def _tracking(recording: Recording, config: Config) -> Metrics:
     contact = _contact(recording)
     error = 1e3 * np.abs(recording["error"])
     touched = float(recording.time[contact.argmax()]) if contact.any() else None
-    used = float(np.max(error[recording.time > 0.5].max(axis=0) / (1e3 * np.array(config.bound))))
+    used = float(np.max(error[recording.time > 0.5] / (1e3 * np.array(config.bound)), initial=0.0))
     if recording.status != "finished":
         used = max(used, 1.0)  # it may pass the bound between two samples
     return {
