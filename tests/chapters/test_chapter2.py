@@ -18,6 +18,7 @@ from dexrepro.chapters.chapter2.balloon_movement import experiment as balloon_mo
 from dexrepro.chapters.chapter2.balloon_static.figures import _off
 from dexrepro.chapters.chapter2.holding_line import experiment as holding_line
 from dexrepro.chapters.chapter2.holding_sensitivity.experiment import margins_of
+from dexrepro.chapters.chapter2.movement_estimation import experiment as movement_estimation
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
 from dexrepro.plan import plan_chapter
@@ -75,6 +76,20 @@ def test_a_spring_of_constant_direction_makes_the_printed_sign_diverge() -> None
     reversed_sign = case("holding_line", "constant_vector_reversed", duration=2.0)
     assert holding_line.simulate(printed, None).status.startswith("diverged")
     assert holding_line.simulate(reversed_sign, None).status == "finished"
+
+
+def test_fast_stiffness_rates_end_by_the_explicit_step_whatever_the_floor() -> None:
+    ends = {}
+    for implicit, floor in ((False, 1.0), (False, 20.0), (True, 1.0)):
+        config = case("movement_estimation", "fast_stiffness", duration=4.0)
+        config.law.estimation.implicit, config.law.estimation.floor = implicit, floor
+        run = movement_estimation.simulate(config, None)
+        ends[implicit, floor] = run.status.partition(" ")[0], run["estimate"][:, 1].min()
+    assert ends[False, 1.0][0] == ends[False, 20.0][0] == "diverged"
+    assert ends[True, 1.0][0] == "finished" and ends[True, 1.0][1] > 20.0
+    # So no run shows what E2.07 warns of, and no override selects it.
+    (erratum,) = (item for item in chapters.load("2").errata if item.id == "E2.07")
+    assert not erratum.switch and "E2.02" in erratum.summary
 
 
 def test_batched_plant_and_world_agree() -> None:
