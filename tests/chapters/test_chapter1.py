@@ -17,6 +17,7 @@ from dexrepro.chapters.chapter1.lyapunov import experiment as lyapunov
 from dexrepro.chapters.chapter1.ready_to_hold import experiment as ready_to_hold
 from dexrepro.chapters.chapter1.sensitivity import experiment as sensitivity
 from dexrepro.chapters.chapter1.two_nuts import experiment as two_nuts
+from dexrepro.claims import TIE
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.holding import AutoregressiveHolding, FixedDistance
 from dexrepro.experiment import Config, Recording
@@ -195,3 +196,11 @@ def test_latch_switches_once_and_the_light_touch_is_held():
     numbers = hand_over.measure(recording, config)
     assert numbers["switches"] == 1
     assert abs(numbers["bias"]) < 0.2
+
+
+def test_what_crosses_later_than_a_rival_is_not_called_a_tie():
+    (claim,) = (claim for claim in chapters.load("1").claims if claim.id == "C1.24a")
+    values = baselines.stored_values("1")
+    proposed, fixed = (values[f"hold_and_move.t1_{law}.rise"] for law in ("proposed", "fixed"))
+    assert proposed > fixed * (1 + TIE)
+    assert f"({proposed:.2f} and {fixed:.2f} s" in claim.evaluate(values).note
