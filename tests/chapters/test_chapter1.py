@@ -204,3 +204,11 @@ def test_what_crosses_later_than_a_rival_is_not_called_a_tie():
     proposed, fixed = (values[f"hold_and_move.t1_{law}.rise"] for law in ("proposed", "fixed"))
     assert proposed > fixed * (1 + TIE)
     assert f"({proposed:.2f} and {fixed:.2f} s" in claim.evaluate(values).note
+
+
+def test_scales_said_to_be_as_precise_are():
+    (claim,) = (claim for claim in chapters.load("1").claims if claim.id == "C1.36")
+    values = baselines.stored_values("1")
+    (reading,) = claim.readings.values()
+    own, rival = (values[name.replace("excursion", "radius")] for name in reading.metrics)
+    assert own == pytest.approx(rival, rel=0.1)

@@ -57,7 +57,7 @@ CLAIMS = (
         credits="the adaptive scale (1.45)",
         readings={
             "less than with a constant scale that is as precise": less(
-                ".smooth.proposed_excursion", ".scale3.general_excursion"
+                ".book.proposed_excursion", ".scale3.general_excursion"
             )
         },
         searched="constant scales of 1 to 6, with and without a low-pass of the hand's speed",
