@@ -1,7 +1,9 @@
+import json
+
 import numpy as np
 import pytest
 
-from dexrepro import config
+from dexrepro import baselines, chapters, config
 from dexrepro.case import live
 from dexrepro.chapters.chapter3 import reach, scene
 from dexrepro.chapters.chapter3.external_push import experiment as external_push
@@ -119,3 +121,15 @@ def test_energy_of_the_error_dynamics_falls_and_large_errors_wait_hardly_longer(
     plant.model.close()
     assert max(small[1], large[1]) <= 0
     assert large[0] < 1.5 * small[0]
+
+
+def test_a_claim_whose_control_holds_in_most_draws_of_its_study_says_so():
+    silent, values = [], baselines.stored_values("3")
+    for claim in chapters.load("3").claims:
+        path = baselines.baseline_dir() / "study" / f"{claim.experiment}.json"
+        row = json.loads(path.read_text())["claims"].get(claim.id) if path.exists() else None
+        if not row or row["predicate"] != str(claim.predicate) or row.get("control_fails") is None:
+            continue
+        if claim.evaluate(values).severe and 2 * row["control_fails"] < row["samples"] and "(study)" not in claim.note:
+            silent.append(claim.id)
+    assert not silent
