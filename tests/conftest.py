@@ -12,12 +12,16 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 import dexrepro
 from dexrepro import chapters, cli
 
 ROOT = Path(dexrepro.__file__).parent.parent
 TOY = Path(__file__).parent / "toy"
+
+settings.register_profile("busy", settings(), deadline=None)  # the clock of a busy machine is no test of a law
+settings.load_profile("busy")
 
 
 @contextlib.contextmanager
