@@ -103,7 +103,7 @@ ERRATA = (
         "tau_e as the force on the environment the plus would be right: the clash of E8.05.",
         "Minus.",
         "unknown_object.interaction.printed=true",
-        (f"{OBJECT}.plus.violated_at",),
+        (f"{OBJECT}.plus.diverged_at",),
     ),
     error(
         "E8.12",

@@ -113,22 +113,25 @@ def _contact(recording: Recording) -> Mask:
 
 
 def _tracking(recording: Recording, config: Config) -> Metrics:
+    """bound_used: largest error in contact over its bound, 1 where one was met, if only between two samples; None where
+    the run diverged."""
     contact = _contact(recording)
-    error = 1e3 * np.abs(recording["error"])
+    error, ended = 1e3 * np.abs(recording["error"]), float(recording.time[-1])
     touched = float(recording.time[contact.argmax()]) if contact.any() else None
-    used = float(np.max(error[recording.time > 0.5] / (1e3 * np.array(config.bound)), initial=0.0))
-    if recording.status != "finished":
-        used = max(used, 1.0)  # it may pass the bound between two samples
+    violated = recording.status.startswith("error bound")
+    diverged = not violated and recording.status != "finished"
+    used = float(np.max(error[contact] / (1e3 * np.array(config.bound)), initial=0.0))
     return {
         "touched_at": touched,
         "surface_error": 1e3 * abs(float(recording["arm.tip"][contact.argmax(), 0]) - config.object.surface)
         if contact.any()
         else None,
         "left_at": float(recording.time[contact][-1]) if contact.any() else None,
-        "violated_at": None if recording.status == "finished" else float(recording.time[-1]),
+        "violated_at": ended if violated else None,
+        "diverged_at": ended if diverged else None,
         "max_error_x": float(error[contact, 0].max()) if contact.any() else None,
         "max_error_y": float(error[contact, 1].max()) if contact.any() else None,
-        "bound_used": used,
+        "bound_used": None if diverged else max(used, 1.0) if violated else used,
     }
 
 
