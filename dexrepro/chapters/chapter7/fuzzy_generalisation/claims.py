@@ -11,6 +11,11 @@ def passes(*cases: str) -> Predicate:
     return every(*(greater(f".{case}.clearance_three", 0) for case in cases))
 
 
+def rescaled(case: str, kept: str) -> Predicate:
+    """Sets that change with the task pass the obstacle, and by more than those that are kept."""
+    return every(passes(case), greater(f".{case}.clearance_three", f".{kept}.clearance_three"))
+
+
 def usable(*cases: str) -> Predicate:
     return every(*(greater(f".{case}.{part}", 0) for case in cases for part in ("lateral_steps", "clearance_chosen")))
 
@@ -59,11 +64,15 @@ CLAIMS = (
     fig_7_9(
         "C7.20",
         "Fuzzy sets must change along with the task.",
-        every(passes("main"), greater(".main.clearance_three", ".same_sets.clearance_three")),
+        rescaled("main", "same_sets"),
         control=passes("same_sets"),
+        printed=passes("printed_sign", "printed_kinematics"),
+        readings={AS_READ: rescaled("as_read", "as_read_same_sets")},
         where="7.3.2",
         note="7.4.2 itself keeps the sets, because the board is the same; here this lowers the clearance from "
-        "{.main.clearance_three:.2f} to {.same_sets.clearance_three:.2f} cm.",
+        "{.main.clearance_three:.2f} to {.same_sets.clearance_three:.2f} cm. Where the printed coordinates, read in "
+        "cm, put the obstacle, it raises it from {.as_read.clearance_three:.2f} to "
+        "{.as_read_same_sets.clearance_three:.2f} cm.",
     ),
     fig_7_9(
         "C7.21",

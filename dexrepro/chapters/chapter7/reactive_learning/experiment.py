@@ -70,24 +70,37 @@ def errors(
 
 
 def baselines(config: Config, learned: skills.Skills, demonstrations: np.ndarray) -> pd.DataFrame:
-    """Errors [cm] without reaction, of a plain primitive fitted again, and with the printed sign in (7.23) alone."""
+    """Errors [cm] without reaction, of plain primitives fitted again (its own kernels, or as many as there are weights
+    after the groups that are shown last and after all), and with the printed sign in (7.23) alone."""
     primitive, mean = learned.primitive, learned.demonstrated[shown(config)]
-    psi = primitive.kernels.features(primitive.phases)
-    again = [
-        psi @ ridge_weights(psi, target, primitive.ridge) for target in learned.target(demonstrations).mean(axis=1)
-    ]
+    targets = learned.target(demonstrations).mean(axis=1)
+
+    def again(nodes: int) -> np.ndarray:
+        psi = skills.Primitive(config, config.dmp.kernels + nodes).kernels.features(primitive.phases)
+        forcing = np.array([psi @ ridge_weights(psi, target, primitive.ridge) for target in targets])
+        return primitive.rollout(forcing, learned.start, learned.goal)
+
     smooth = skills.low_pass(mean - learned.perform(), config.dmp.cutoff, primitive.rate, axis=-2)
     velocity = primitive.duration * np.gradient(smooth, 1 / primitive.rate, axis=-2)
     printed = learned.reaction_targets[shown(config)] - 2 * primitive.system.damping * velocity
     forcing = fit(config, learned, learned.features, printed)
     paths = {
         "no reaction": np.broadcast_to(learned.perform(), mean.shape),
-        "plain primitive fitted again": primitive.rollout(np.array(again), learned.start, learned.goal),
+        "plain primitive fitted again": again(0),
+        **{
+            f"plain primitive with the weights of {g} groups": again(g * config.enhancement.nodes)
+            for g in larger(config)
+        },
         "printed sign of D(v^N - v)": learned.perform(forcing @ learned.reach.axes.T),
     }
     spread = np.sqrt(((demonstrations - mean[:, None]) ** 2).sum(axis=-1).mean(axis=(1, 2)))
     rows = [{"what": name, "rmse": rms_distance(path, mean).mean()} for name, path in paths.items()]
     return pd.DataFrame([*rows, {"what": "spread of repetitions", "rmse": spread.min()}])
+
+
+def larger(config: Config) -> tuple[int, int]:
+    """Groups of nodes after which a plain primitive of as many weights is a rival: those shown last, and all."""
+    return config.shown_groups[-1], config.enhancement.groups
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
@@ -104,6 +117,10 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "spread": float(baseline["spread of repetitions"]),
         "no_reaction": float(baseline["no reaction"]),
         "plain_refit": float(baseline["plain primitive fitted again"]),
+        **{
+            f"plain_equal{g}": float(baseline[f"plain primitive with the weights of {g} groups"])
+            for g in larger(config)
+        },
         "printed_difference": float(baseline["printed sign of D(v^N - v)"]),
         "ordinary_change": ordinary_change(recording, config),
         **normalisation(config),
