@@ -78,9 +78,9 @@ CLAIMS = (
             *(less(".tuned.tip_rms", f".{pd}.tip_rms") for pd in ("pd_tuned", "pd_stiffest")),
             less(".tuned_encoders.tip_rms", ".pd_stiffest_encoders.tip_rms"),
         ),
-        note="As many settings each, chosen on the letter a. The best PD gain is the largest of them: with ten times "
-        "as much PD control errs by {.pd_stiffest.tip_rms:.3f} mm against {.pd_tuned.tip_rms:.3f}, and the law with "
-        "its untuned gains by {.letter_w.tip_rms:.3f}; with encoders at a torque ripple of "
+        note="As many settings each, chosen on the letter a. The best PD gain is the largest of them; searched on to "
+        "where it chatters, PD control errs by {.pd_stiffest.tip_rms:.3f} mm against {.pd_tuned.tip_rms:.3f}, and the "
+        "law with its untuned gains by {.letter_w.tip_rms:.3f}; with encoders at a torque ripple of "
         "{.pd_stiffest_encoders.torque_step:.2g} against {.tuned_encoders.torque_step:.2g} N m (T5.G, T5.H).",
     ),
     ours_5_d(
