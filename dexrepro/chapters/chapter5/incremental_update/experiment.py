@@ -17,7 +17,7 @@ from dexrepro.primitives import (
     DMP,
     GaussianKernels,
     GrowingRegression,
-    extend,
+    TruncatedKernels,
     extended_pseudo_inverse,
     forcing_target,
     least_squares,
@@ -150,7 +150,7 @@ def _cost(config: Config, rng: Rng) -> Recording:
 
 
 def _search(config: Config, rng: Rng) -> Recording:
-    """A letter learned by an IDMP, and by trial: a cross-entropy search over the weights of a plain DMP.
+    """A letter learned by DMP+, and by trial: a cross-entropy search over the weights of a plain DMP.
 
     The search is helped: its kernels are equally spaced, as many as it takes to be well conditioned, and it is told the
     size of the best weights. A rollout is one product with the primitive's responses.
@@ -158,15 +158,14 @@ def _search(config: Config, rng: Rng) -> Recording:
     settings, scaling = config.search, letters.letter_scaling(config)
     shown = letters.demonstration(config.hand.letter, config, rng("demonstration"))
 
-    def fit(kernels: GaussianKernels) -> DMP:
+    def fit(features: GaussianKernels | TruncatedKernels) -> DMP:
         options = {"rest": config.training.rest, "rcond": config.training.rcond}
-        return DMP.fit(shown, kernels, letters.system(config), config.dmp.decay, scaling, **options)
+        taught = letters.taught(shown, config)
+        return DMP.fit(taught, features, letters.system(config), config.dmp.decay, scaling, **options)
 
     few, many = (letters.kernels(count, config, None) for count in (config.kernels.count, settings.kernels))
-    base, plain = fit(few), fit(many)
-    features = letters.features(few, config.features.added, config, rng("search"))
-    grown = extend(base, features, shown, rest=config.training.rest, rcond=config.training.rcond)
-    error, direct = (letters.squared_error(letters.rollout(p, config), shown.position) for p in (grown, plain))
+    plus, plain = fit(TruncatedKernels(few, config.dmp_plus.reach, config.dmp_plus.two_sided)), fit(many)
+    fitted = [letters.squared_error(letters.rollout(p, config), shown.position) for p in (plus, fit(few), plain)]
     step, generator = config.dmp.duration / (config.dmp.samples - 1), rng("trials")
     responses, amplitude = plain.propagator(step), scaling.amplitude(plain.start, plain.goal)
     mean = np.zeros_like(plain.weights)
@@ -179,8 +178,8 @@ def _search(config: Config, rng: Rng) -> Recording:
         best = trials[np.argsort(errors)[: settings.elite]]
         mean, spread = best.mean(axis=0), best.std(axis=0)
         rollouts += settings.population
-        rows.append((rollouts, errors.min(), error, direct))
-    columns = ["rollouts", "error", "grown", "plain"]
+        rows.append((rollouts, errors.min(), *fitted))
+    columns = ["rollouts", "error", "dmp_plus", "dmp", "plain"]
     return Recording(frames={"search": pd.DataFrame(rows, columns=columns)}, steps=rollouts)
 
 
@@ -260,17 +259,19 @@ def _measure_mechanism(frame: pd.DataFrame) -> Metrics:
 
 
 def _measure_search(frame: pd.DataFrame, config: Config) -> Metrics:
-    samples, count, added = config.dmp.samples, config.kernels.count, config.features.added
-    rows, last = round((1 + config.training.rest) * samples), frame.iloc[-1]
+    samples, last = config.dmp.samples, frame.iloc[-1]
+    rows = round((1 + config.training.rest) * samples)
     trial = samples * config.search.kernels * 2
     return {
         "error": float(frame.error.min()),
-        "error_idmp": float(last.grown),
+        "error_dmp_plus": float(last.dmp_plus),
+        "error_dmp": float(last.dmp),
         "error_least_squares": float(last.plain),
         "rollouts": int(last.rollouts),
         "operations": int(last.rollouts) * trial,
         "operations_trial": trial,
-        "operations_idmp": solve_operations(rows, count) + solve_operations(rows, count + added),
+        "operations_dmp_plus": solve_operations(rows, 2 * config.kernels.count),
+        "operations_dmp": solve_operations(rows, config.kernels.count),
     }
 
 
