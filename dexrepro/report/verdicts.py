@@ -61,9 +61,12 @@ def strength(claim: Claim) -> str:
 
 
 def noticed(claim: Claim) -> str:
-    """Whether a failure would have been noticed, in a phrase."""
+    """Whether a failure would have been noticed, in a phrase, with how often the control fails where it was drawn."""
     if claim.get("control_margin") is not None:
-        return "yes: the control fails" if is_severe(claim) else "no: the control holds as well"
+        row = claim.get("study") or {}
+        fails = row.get("control_fails")
+        draws = "" if fails is None else f" (it fails in {fails} of {row['samples']} draws)"
+        return f"{'yes: the control fails' if is_severe(claim) else 'no: the control holds as well'}{draws}"
     if claim.get("no_control"):
         return f"no control can exist: {claim['no_control']}"
     return "the control was not evaluated" if claim.get("control") else "not tested: no control on record"
