@@ -119,7 +119,8 @@ class _Table:
             (k for k, line in enumerate(lines) if not COMMENT.match(line) and _numbers(line) >= enough), len(lines)
         )
         stripped = [line.strip(" \t,;") for line in lines]
-        self.body = [k for k in range(first, len(lines)) if stripped[k] and not COMMENT.match(lines[k])]
+        rows = [k for k in range(first, len(lines)) if stripped[k]]
+        self.body = [k for k in rows if not (stripped[k][0] in "#%/" and COMMENT.match(lines[k]))]
         self.separator = self._separator(lines[first - 1] if first else "")
         head = [k for k in range(first) if stripped[k] and not stripped[k].startswith("sep=")]
         plain = [k for k in head if not COMMENT.match(lines[k])]

@@ -303,13 +303,25 @@ def test_a_file_or_unit_that_is_not_there_gets_one_sentence(tmp_path: Path) -> N
 
 
 def test_what_is_no_text_is_said_to_be_none(tmp_path: Path) -> None:
-    for begin in (b"PK\x03\x04\x14\0", b"\x1f\x8b\x08\0"):
+    for begin in (
+        b"PK\x03\x04\x14\0",
+        b"\x1f\x8b\x08\0",
+        b"BZh91AY&SY",
+        b"\xfd7zXZ\0",
+        b"7z\xbc\xaf'",
+        b"\x28\xb5\x2f\xfd",
+    ):
         (tmp_path / "path.csv").write_bytes(begin + bytes(range(256)))
         with pytest.raises(ValueError, match="it is a spreadsheet or an archive, not text; export or unpack it first"):
             read_path(str(tmp_path / "path.csv"))
     for start, sentence in {
         b"\x93NUMPY\x01": "a NumPy file, not text; export its numbers as CSV", b"MATLAB 5.0 MAT-": "a MATLAB file",
         b"\x89HDF\r\n": "an HDF5 file", b"\n<!DOCTYPE html>": "a web page; download the file itself",
+        b"MATLAB 7.3 MAT-": "a MATLAB file", b"\x89MCAP0\r\n": "a ROS bag", b"\x89PNG\r\n\x1a\n": "a picture, not text",
+        b"\xff\xd8\xff\xe0\0\x10JFIF": "a picture", b"%PDF-1.7\n%\xe2\xe3": "a PDF file", b"{\\rtf1": "an RTF file",
+        b"SQLite format 3\0": "an SQLite file",
+        b"0,1,2\n\x80\4": "no text, or damaged: line 2 holds the byte 04; save it as text",
+        ("time,x,y\n" + PLAIN).replace("2.5,", "2.5\0,").encode(): "no text, or damaged: line 7 holds the byte 00",
         b"version https://git-lfs.github.com/spec/v1\n": "a pointer of Git LFS to the file; run: git lfs pull",
     }.items():  # fmt: skip
         (tmp_path / "path.csv").write_bytes(start)
