@@ -32,6 +32,8 @@ COMMENT = re.compile(r"\s*(#(?!N/A|[A-Z/0]+[!?])|%|//)[\s#%/]*")  # "#N/A", "#DI
 FEWEST = 8
 LONG = 60.0  # s; a file that lasts longer with steps of a second or more has other stamps than seconds
 SHORT = 0.01  # s; no movement of a hand
+csv.field_size_limit(2**31 - 1)  # by default 128 kB, which a note or a picture in base64 beside the path exceeds
+SHOWN, LONGEST = 60, 300  # letters of a line and of a header in a sentence
 PAUSE = 10.0  # times the usual step; where such pauses take a third of the time, clocks have jumped
 
 
@@ -114,10 +116,7 @@ class _Table:
         self.columns: list[int] | None = None
         self.units: list[str] = [""] * len(wanted)
         self.named = 0  # how many columns the header names
-        enough = min(len(wanted), 3)
-        first = next(
-            (k for k, line in enumerate(lines) if not COMMENT.match(line) and _numbers(line) >= enough), len(lines)
-        )
+        first = _first_row(lines, min(len(wanted), 3))
         stripped = [line.strip(" \t,;") for line in lines]
         rows = [k for k in range(first, len(lines)) if stripped[k]]
         self.body = [k for k in rows if not (stripped[k][0] in "#%/" and COMMENT.match(lines[k]))]
@@ -130,13 +129,12 @@ class _Table:
                 if self.columns is not None:  # rows that hold no numbers enough are to be refused, not left out
                     self.body = [other for other in plain if other > k and _numbers(lines[other])] + self.body
         if plain and not self.body:
-            shown = f"line {plain[-1] + 1} holds '{stripped[plain[-1]][:60]}'"
+            shown = f"line {plain[-1] + 1} holds '{stripped[plain[-1]][:SHOWN]}'"
             parted = "it has no row of numbers parted by commas, semicolons, tabs or blanks"
             raise ValueError(f"{parted} ({', '.join(wanted)} are wanted); {shown}")
         if plain and self.columns is None:
-            raise ValueError(
-                f"its columns are {', '.join(_fields(lines[plain[-1]]))}; they must be {', '.join(wanted)}"
-            )
+            names = max(map(_fields, (lines[k] for k in reversed(plain))), key=self._found)
+            raise ValueError(f"its columns are {', '.join(names)[:LONGEST]}; they must be {', '.join(wanted)}")
         self._check(first)
 
     def _check(self, first: int) -> None:
@@ -171,11 +169,15 @@ class _Table:
             row.pop()
         return row
 
+    def _found(self, names: list[str]) -> int:
+        """How many columns are the wanted ones."""
+        return len({_column(name, names) for name in self.wanted} - {None})
+
     def _name(self, line: str) -> None:
         """Take the columns, or their units, from a line before the numbers, if it names them."""
         names = _fields(COMMENT.sub("", line))
         found = [_column(name, names) for name in self.wanted]
-        if None in found:
+        if self._found(names) < len(self.wanted):
             units = [entry.strip("[]() ") for entry in names]
             if not (COMMENT.match(line) or _numbers(line)) or {entry.lower() for entry in units} <= UNITS:
                 self.units = units  # perhaps a row of units under the names
@@ -234,7 +236,7 @@ class _Table:
                     must = "its time must be a number, not a date or a clock's"
                 elif len(marks) > 1:
                     must = "numbers must have either . or , and no mark between thousands"
-                raise ValueError(f"line {k + 1} holds '{self.lines[k].strip()}': {must}")
+                raise ValueError(f"line {k + 1} holds '{self.lines[k].strip()[:SHOWN]}': {must}")
             data.append([float(_point(entry)) for entry in chosen])
             numbers.append(k + 1)
         return np.array(data).reshape(-1, len(self.wanted)), np.array(numbers)
@@ -331,6 +333,19 @@ def demonstrations(
         raise ValueError(f"{len(found)} files are more than the {count} demonstrations of the experiment")
     paths = [resampled(*read_path(name, style, axes, otherwise), samples) for name in found]
     return [paths[k % len(paths)] for k in range(count)]
+
+
+def _first_row(lines: Sequence[str], enough: int) -> int:
+    """The first line with enough numbers; one with words, too, is about the recording if the next one has too few."""
+    rows = (k for k, line in enumerate(lines) if line.strip(" \t,;") and not COMMENT.match(line))
+    found = len(lines)
+    for k in rows:
+        if (full := _numbers(lines[k]) >= enough) and found < len(lines):
+            break
+        found = k if full else len(lines)
+        if full and not re.search("[a-z]{2}", lines[k]):
+            break
+    return found
 
 
 def _numbers(line: str) -> int:

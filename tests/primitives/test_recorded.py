@@ -95,6 +95,8 @@ COMMAS = rows("{t};{x};{y}").replace(".", ",")
         "\n\ntime,x,y\r\n" + PLAIN.replace("\n", "\r\n"),
         "id,time,x,y,comment\n" + rows("a,{t},{x},{y},fine"),
         rows("+{t}e0,{x},{y}"),
+        "Format Version,1.23,Rate,120.000,Exported,2\n\n,,pen,pen\nFrame,Time (Seconds),X,Y\n" + rows("7,{t},{x},{y}"),
+        "time,x,y,picture\n" + rows("{t},{x},{y}," + "QUJD" * 50_000),
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
@@ -142,6 +144,8 @@ def test_units_come_from_the_header_or_from_who_knows_better(
         ("time,x [mm],y [mm]", Format("cm"), "its header gives x in mm, not in cm; set unit=mm"),
         ("time [h],x,y", Format(), "its header gives time in h; set time_unit= to s, ms, us, ns, min"),
         ("time,x1,y1", Format(), "its columns are time, x1, y1; they must be time, x, y"),
+        ("Frame,X,Y\n,mm,mm", Format(), "its columns are Frame, X, Y; they must be time, x, y"),
+        ("time\tx y", Format(), "its columns are time, x y; they must be time, x, y"),
         (
             "time,left.x,right.x,y",
             Format(),
@@ -293,6 +297,19 @@ def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
 def test_a_file_that_cannot_be_used_gets_one_sentence(tmp_path: Path, rows, header: str, sentence: str) -> None:
     with pytest.raises(ValueError, match=f"path.csv': .*{sentence}"):
         read_path(write(tmp_path, rows, header), axes=2)
+
+
+@pytest.mark.parametrize(
+    ("rows", "header", "sentence"),
+    [
+        ([*ROWS, "a" * 200_000 + ",1,2"], "time,x,y\n", "line 12 holds 'aaaaa"),
+        (ROWS, "time," + ",".join("abcdefgh" * 9000) + "\n", "its columns are time, a, b"),
+    ],
+)
+def test_a_sentence_shows_the_beginning_of_a_long_line(tmp_path: Path, rows, header: str, sentence: str) -> None:
+    with pytest.raises(ValueError, match=sentence) as caught:
+        read_path(write(tmp_path, rows, header), axes=2)
+    assert len(str(caught.value)) < 600
 
 
 def test_a_file_or_unit_that_is_not_there_gets_one_sentence(tmp_path: Path) -> None:
