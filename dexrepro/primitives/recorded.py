@@ -8,6 +8,7 @@ import glob
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,7 @@ NANO = {"nanosec", "nanosecs", "nsec", "nsecs"}  # of a stamp whose whole second
 NO_PLACE = {"orientation", "rotation", "angular", "quaternion", "q", "velocity", "vel", "v", "speed", "acceleration",
             "acc", "force", "torque", "seq"}  # fmt: skip
 COMMENT = re.compile(r"\s*(#(?!N/A|[A-Z/0]+[!?])|%|//)[\s#%/]*")  # "#N/A", "#DIV/0!" and such are entries of a sheet
+STAMP = r"(\d{4}-\d\d-\d\d[t ])?\d?\d:\d\d:\d\d([.,]\d+)?(z|[-+]\d\d:?\d\d)?"  # of ISO 8601
 FEWEST = 8
 LONG = 60.0  # s; a file that lasts longer with steps of a second or more has other stamps than seconds
 SHORT = 0.01  # s; no movement of a hand
@@ -62,7 +64,8 @@ class Format:
 def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str = "m") -> tuple[Array, Array]:
     """Time (N,) [s] from 0 and position (N, axes) [m] of a file with the columns time, x, y and, for three axes, z.
 
-    Columns are parted by commas, semicolons, tabs or blanks; the decimal mark may be a comma where that is clear. A
+    Columns are parted by commas, semicolons, tabs or blanks; the decimal mark may be a comma where that is clear. Times
+    are numbers, or dates with a clock's time as ISO 8601 writes them, or this alone. A
     line before the numbers may name the columns, in any order and among others, with their units in brackets. Lines
     that begin with #, % or // are comments. otherwise: the unit of length where neither header nor ``style`` tells it.
     Raises ValueError with one sentence where the file cannot be used.
@@ -75,7 +78,10 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
         raise ValueError(f"cannot read '{path}': {error}") from None
     try:
         table = _Table(lines, ("time", "x", "y", "z")[: axes + 1])
-        length, tick = (table.unit(style, *kind) for kind in (("unit", LENGTHS, 1), ("time_unit", TIMES, 0)))
+        length = table.unit(style, "unit", LENGTHS, 1)
+        if table.dated and style.time_unit not in (None, "s"):
+            raise ValueError(f"its times are a clock's; leave out time_unit={style.time_unit}")
+        tick = "s" if table.dated else table.unit(style, "time_unit", TIMES, 0)
         data, numbers = table.data()
         time, position = TIMES[tick or "s"] * (data[:, 0] - data[0, 0]), LENGTHS[length or otherwise] * data[:, 1:]
         if style.duplicates == "drop":
@@ -108,7 +114,8 @@ def read_corners(path: str, style: Format = Format(), otherwise: str = "m") -> A
 class _Table:
     """Rows of numbers in lines of text, from the columns ``wanted``; what stands before them names columns and units.
 
-    columns: where the wanted ones are, None where nothing names them; units: by column, as the header spells them.
+    columns: where the wanted ones are, None where nothing names them; units: by column, as the header spells them;
+    dated: whether the times are a clock's.
     """
 
     def __init__(self, lines: list[str], wanted: tuple[str, ...]) -> None:
@@ -135,6 +142,7 @@ class _Table:
         if plain and self.columns is None:
             names = max(map(_fields, (lines[k] for k in reversed(plain))), key=self._found)
             raise ValueError(f"its columns are {', '.join(names)[:LONGEST]}; they must be {', '.join(wanted)}")
+        self.dated = wanted[0] == "time" and bool(self.body) and _seconds(self._chosen(self.body[0])[0]) is not None
         self._check(first)
 
     def _check(self, first: int) -> None:
@@ -156,7 +164,7 @@ class _Table:
 
         def rows(separator: str | None) -> tuple[int, int, int]:
             parts = [self._split(self.lines[k], separator) for k in self.body[:20]]
-            good = sum(len(row) >= len(self.wanted) and all(map(_is_number, map(_point, row))) for row in parts)
+            good = sum(len(row) >= len(self.wanted) and all(map(_is_entry, row)) for row in parts)
             return good, above.count(separator or " "), len(parts[0]) if parts else 0
 
         return max((";", "\t", ",", None), key=rows)
@@ -172,6 +180,11 @@ class _Table:
     def _found(self, names: list[str]) -> int:
         """How many columns are the wanted ones."""
         return len({_column(name, names) for name in self.wanted} - {None})
+
+    def _chosen(self, k: int) -> list[str]:
+        """The entries of a line in the wanted columns, or all where nothing names these."""
+        row = self._split(self.lines[k], self.separator)
+        return [row[column] if column < len(row) else "" for column in self.columns or range(len(row))]
 
     def _name(self, line: str) -> None:
         """Take the columns, or their units, from a line before the numbers, if it names them."""
@@ -228,12 +241,14 @@ class _Table:
                 raise ValueError(
                     f"line {k + 1} has {len(row)} numbers; it must have {wanted}, or a first line must name the columns"
                 )
-            chosen = [row[column] if column < len(row) else "" for column in self.columns or range(len(row))]
-            marks |= {mark for entry in chosen for mark in ".," if mark in entry}
+            chosen = self._chosen(k)
+            if self.dated and (instant := _seconds(chosen[0])) is not None:
+                chosen[0] = instant
+            marks |= {mark for entry in chosen[self.dated :] for mark in ".," if mark in entry}
             if not all(map(_is_number, map(_point, chosen))) or len(marks) > 1:
                 must = "every entry must be a finite number"
                 if ":" in chosen[0]:
-                    must = "its time must be a number, not a date or a clock's"
+                    must = "its time must be a number, or all be as 2026-11-28T10:00:00.25 or 10:00:00.25"
                 elif len(marks) > 1:
                     must = "numbers must have either . or , and no mark between thousands"
                 raise ValueError(f"line {k + 1} holds '{self.lines[k].strip()[:SHOWN]}': {must}")
@@ -350,13 +365,27 @@ def _first_row(lines: Sequence[str], enough: int) -> int:
 
 def _numbers(line: str) -> int:
     """How many entries of a line are numbers, whatever parts them."""
-    return sum(re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|[-+]?inf", entry) is not None
+    return sum(re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|[-+]?inf|" + STAMP, entry) is not None
                for entry in re.split(r'[;,\s"]+', line.lower()))  # fmt: skip
 
 
 def _point(entry: str) -> str:
     """A number with a decimal point in the place of a comma."""
     return entry.replace(",", ".")
+
+
+def _seconds(entry: str) -> str | None:
+    """A date with a clock's time, or this alone, as seconds; None for what is neither."""
+    if not re.fullmatch(STAMP, entry.lower()):
+        return None
+    with contextlib.suppress(ValueError):  # such as the 31st of February
+        date = datetime.fromisoformat(entry if "-" in entry[:5] else f"1970-01-01T{'0' * (entry[1] == ':')}{entry}")
+        return repr((date if date.tzinfo else date.replace(tzinfo=UTC)).timestamp())
+    return None
+
+
+def _is_entry(text: str) -> bool:
+    return _is_number(_point(text)) or _seconds(text) is not None
 
 
 def _is_number(text: str) -> bool:

@@ -107,6 +107,24 @@ def test_files_of_many_makes_hold_the_same_path(tmp_path: Path, text: str, encod
     assert position == pytest.approx(WANTED)
 
 
+@pytest.mark.parametrize("header", ["time{0}x{0}y\n", "timestamp (UTC){0}x{0}y\n", ""])
+@pytest.mark.parametrize(("separator", "mark"), [(",", "."), (";", ","), ("\t", ".")])
+@pytest.mark.parametrize(
+    "form",
+    ["2026-11-28T10:59:{:09.6f}+01:00", "2026-11-28 23:59:{:06.3f}Z", "2026-11-28 09:59:{:04.1f}", "9:59:{:04.1f}"],
+)
+def test_dates_and_clocks_as_iso_8601_writes_them_are_times(
+    tmp_path: Path, form: str, separator: str, mark: str, header: str
+) -> None:
+    data = [separator.join((form.format(50 + 0.1 * k), f"{k}{mark}0", f"{2 * k}{mark}0")) for k in range(10)]
+    file = write(tmp_path, data, header.format(separator))
+    time, position = read_path(file, axes=2)
+    assert time == pytest.approx(np.arange(10) * 0.1, abs=1e-6)
+    assert position == pytest.approx(WANTED)
+    with pytest.raises(ValueError, match="its times are a clock's; leave out time_unit=ms"):
+        read_path(file, Format(time_unit="ms"), axes=2)
+
+
 @pytest.mark.parametrize(
     ("header", "style", "factor", "second"),
     [
@@ -267,8 +285,14 @@ def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
         ([], "time,x,y\n", "it has no row of numbers parted by commas, semicolons, tabs or blanks"),
         (["0.5|1|2"] * 9, "time|x|y\n", r"it has no row of numbers parted by .*; line 10 holds '0.5.1.2'"),
         (["#N/A,1,2"] * 9, "0,1,2\n1,1,3\n", "line 3 holds '#N/A,1,2': every entry must be a finite number"),
-        ([f"2026-11-28T10:00:0{k},{k},1" for k in range(9)], "time,x,y\n", "line 2 holds .*its time must be a number"),
-        ([f"28.11.2026 10:00:0{k}.5,{k},1" for k in range(9)], "time,x,y\n", "line 2 holds .*not a date or a clock's"),
+        (
+            [f"28.11.2026 10:00:0{k}.5,{k},1" for k in range(9)],
+            "time,x,y\n",
+            "line 2 holds .*all be as 2026-11-28T10:0",
+        ),
+        ([f"2026-02-31 10:00:0{k},{k},1" for k in range(9)], "time,x,y\n", "line 2 holds .*its time must be a number"),
+        ([ROWS[0], *(f"10:00:0{k},{k},1" for k in range(9))], "time,x,y\n", "line 3 holds .*its time must be a number"),
+        ([f"23:59:5{k + 6 if k < 4 else 0},{k},1" for k in range(9)], "time,x,y\n", "time does not increase at line 6"),
         (["2.0,NA,NA", *ROWS[1:]], "time,x,y\n", "line 2 holds '2.0,NA,NA': every entry must be a finite number"),
         ([f"{k}.0D-1,1.0D0,1" for k in range(9)], "time,x,y\n", "line 2 holds '0.0D-1,"),
         (
