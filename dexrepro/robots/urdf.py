@@ -24,6 +24,7 @@ TURNING = ("revolute", "continuous")
 FOREIGN = {"mujoco": "an MJCF file of MuJoCo", "sdf": "an SDF file of Gazebo", "COLLADA": "a COLLADA mesh"}
 MESHES = (".stl", ".obj", ".dae")  # what the engine reads
 NEEDED = ("value", "ixx", "iyy", "izz", "size", "radius", "length")  # of an element that is there, as in ROS
+LONGEST = 255  # letters of a name; PyBullet ends the process for some thousand bytes
 LARGEST = 10.0  # m; what is longer in an arm's file is likely to be in another unit
 ROUNDING = 0.05
 """How far an inertia may be from a rigid body's and still be read: what its largest principal moment exceeds the sum of
@@ -311,7 +312,7 @@ class _Tree:
             folders = [Path(self.packages[package]).expanduser()] if package in self.packages else above
         else:
             folders = [self.path.parent]
-        found = [(folder / rest).resolve() for folder in folders if (folder / rest).is_file()]
+        found = [(folder / rest).resolve() for folder in folders if os.path.isfile(folder / rest)]
         return found[0] if found and found[0].suffix.lower() in MESHES else None
 
     def _joint(self, node: xml.Element, origin: Pose) -> Joint:
@@ -354,6 +355,10 @@ def _by_name(robot: xml.Element, kind: str) -> dict[str, xml.Element]:
     for node in robot.findall(kind):
         if not _name(node):
             raise ValueError(f"a {kind} has no name")
+        if len(_name(node)) > LONGEST:
+            raise ValueError(
+                f"the name of {kind} '{_name(node)[:40]}…' has {len(_name(node))} letters, {LONGEST} at most"
+            )
         if found.setdefault(_name(node), node) is not node:
             raise ValueError(f"there are two {kind}s '{_name(node)}'; names must differ")
     return found
@@ -397,8 +402,10 @@ def _pose(node: xml.Element) -> Pose:
 def _axis(node: xml.Element) -> Array:
     """Unit vector (3,) of a joint's axis."""
     axis = np.array(_floats(node.find("axis"), "xyz", "1 0 0"))
-    if not np.any(axis):
-        raise ValueError(f"joint '{_name(node)}' has the axis 0 0 0; it must have a direction")
+    if not 1e-12 < math.hypot(*axis) < 1e12:
+        raise ValueError(
+            f"joint '{_name(node)}' has the axis {' '.join(f'{x:g}' for x in axis)}; it must have a direction"
+        )
     return axis / np.linalg.norm(axis)
 
 

@@ -135,6 +135,10 @@ BOMB = "<!DOCTYPE robot [<!ENTITY e0 'xxxxxxxxxx'>" + "".join(
         (("</robot>", f"<gazebo>{LOOP}</gazebo><ignition:plugin/></robot>"), "utf-8"),
         (("</robot>", f"<transmission>{LOOP}<link name='one'/></transmission></robot>"), "utf-8"),
         (("</robot>", "</robot>\n\0\0\0"), "utf-8"),
+        (
+            ("</collision>", f"</collision><visual><geometry><mesh filename='{'m' * 5000}'/></geometry></visual>"),
+            "utf-8",
+        ),
         (('<mass value="2"/>', '<mass value="2"/><!-- ${mass} -->'), "utf-8"),
         (("<robot", "<!------ arm -- of 2019 --- -->\n<robot"), "utf-8"),
         (("<robot", "<!-- of 2019 -->\n\n<?xml version='1.0'\nencoding='utf-8'?>\r\n<robot"), "utf-8"),
@@ -192,7 +196,11 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
         ((LIMIT, '<limit lower="-1" upper="1" velocity="-3"/>'), "joint 'pitch' has the velocity limit -3"),
         ((LIMIT, LIMIT + '<mimic joint="yaw"/>'), "joint 'pitch' follows joint 'yaw' .mimic.*before it, at two"),
         (('"camera" type="fixed">', '"camera" type="revolute"><mimic joint="pitch"/>'), "'camera' off the chain foll"),
-        ((f"<axis xyz=\"1 1 0\"/>{LIMIT}", '<axis xyz="0 0 0"/>'), "joint 'pitch' has the axis 0 0 0"),
+        ((f"<axis xyz=\"1 1 0\"/>{LIMIT}", '<axis xyz="0 0 0"/>'), "joint 'pitch' has the axis 0 0 0; it must have"),
+        (('<axis xyz="1 1 0"/>', '<axis xyz="1e300 0 0"/>'), "joint 'pitch' has the axis 1e.300 0 0; it must"),
+        (('<axis xyz="1 1 0"/>', '<axis xyz="0 1e-300 0"/>'), "joint 'pitch' has the axis 0 1e-300 0; it must"),
+        (('joint name="pitch"', f'joint name="{"p" * 5000}"'), "name of joint 'p{40}…' has 5000 letters, 255 at most"),
+        (('link name="eye"', f'link name="{"e" * 256}"'), "the name of link 'e{40}…' has 256 letters, 255 at most"),
     ],
 )  # fmt: skip
 def test_a_file_that_cannot_be_used_gets_one_sentence(path: Path, change: tuple[str, str], sentence: str) -> None:
