@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from dexrepro.commands import FAILED, OK, SHOWN, WRONG, command, option, out, say, warn
 from dexrepro.commands.run import WITHOUT_PYBULLET, launch
-from dexrepro.errors import InputError, refused, whole_number
+from dexrepro.errors import InputError, nearest, refused, whole_number
 from dexrepro.keys import SELECTION
 
 if TYPE_CHECKING:
@@ -33,11 +33,16 @@ def check_command(options: argparse.Namespace) -> int:
     from dexrepro.physics.engine import REFERENCE, is_installed
     from dexrepro.selection import existing, quoted, selected
 
-    numbers, only, results, workers, extra = selected(options.selection, "check")
+    accepted = [word for word in options.accept if "=" not in word]  # what selects may stand behind them
+    words = [*options.selection, *(word for word in options.accept if "=" in word)]
+    numbers, only, results, workers, extra = selected(words, "check")
     case = next((quoted(f"case={value}") for value in extra.values()), None)
+    _check_accepted(accepted, numbers, options.update)
     if options.update:
+        if case:
+            raise InputError(f"{case} is not allowed with --update: what is stored is of all cases")
         for number in numbers:
-            for line in baselines.update_chapter(number, results, only, accept=options.accept, workers=workers):
+            for line in baselines.update_chapter(number, results, only, accept=accepted, workers=workers):
                 say(line)
         return OK
     try:
@@ -57,6 +62,20 @@ def check_command(options: argparse.Namespace) -> int:
     if not (ok or is_installed(REFERENCE)):
         warn(WITHOUT_PYBULLET)
     return OK if ok else FAILED
+
+
+def _check_accepted(accepted: Sequence[str], numbers: Sequence[str], update: bool) -> None:
+    """Refuse claims that there are not, and any where nothing is stored."""
+    from dexrepro import chapters
+
+    if accepted and not update:
+        raise InputError(f"--accept {' '.join(accepted)} has no meaning without --update")
+    known = [claim.id for number in numbers for claim in chapters.load(number).claims] if accepted else []
+    for name in accepted:
+        if name not in known:
+            raise InputError(
+                f"--accept {name} is not allowed: these chapters have no such claim; {nearest(name, known)}"
+            )
 
 
 def _print_check(report: ChapterReport) -> None:

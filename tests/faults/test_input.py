@@ -100,6 +100,13 @@ def test_another_set_of_cases_does_not_take_the_place_of_the_books_result(
         ("check only=decai", "did you mean 'decay'?"),
         ("check chapter=91", "unknown chapter '91'"),
         ("check figure=90.11", "unknown figure '90.11'"),
+        ("check --accept nosuch", "--accept nosuch has no meaning without --update"),
+        (
+            "check --update --accept C90.2",
+            "--accept C90.2 is not allowed: these chapters have no such claim; did you mean",
+        ),
+        ("check --update --accept C90.02 chapter=91", "unknown chapter '91'"),
+        ("check --update case=plain", "case=plain is not allowed with --update"),
         ("draw figure=T90.7", "unknown figure 'T90.7'"),
         ("study only=needs_more samples=1", "there is no claim that a study could test"),
         ("study only=decay samples=0", "samples = 0 is not allowed"),
