@@ -24,6 +24,7 @@ if TYPE_CHECKING:  # Hydra is imported where it is needed: it takes as long as a
 SETTINGS = ("only", "case", "figure", "seed", "engine", "results", "workers", "case_timeout", "force", "quiet", "gui")
 LARGEST_SWEEP = 100_000  # jobs
 CASE = r"[\w+-]+"  # what names a case, and its files
+LONGEST = 60  # letters; with what is written behind and beside it, no name is too long for a disk
 
 
 def config_dir() -> Path:
@@ -202,6 +203,9 @@ def read_config(path: Path) -> dict[str, Any]:
         content: Any = OmegaConf.to_container(OmegaConf.create(path.read_text("utf-8")), resolve=False)
     except AssertionError:
         content = None
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{path}: line {line} is not UTF-8; save the file as UTF-8") from error
     except (yaml.YAMLError, OmegaConfBaseException, ValueError) as error:
         raise InputError(f"{path} is no YAML file: {' '.join(str(error).split())}") from error
     if not isinstance(content, dict) or not content or not all(isinstance(key, str) for key in content):
@@ -320,8 +324,10 @@ def check_settings(composed: Mapping[str, Any]) -> None:
     if isinstance(figure, list):
         raise refused("figure", figure, "be one figure or table, such as 2.7 or T2.1")
     scene = composed.get("scene")
-    if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]*", name := str(scene.get("name"))):
-        raise InputError(f"scene.name = {name} is not allowed: it names a folder; use letters, digits, '_' and '-'")
+    if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]{,59}", name := str(scene.get("name"))):
+        raise InputError(
+            f"scene.name = {name[:80]} is not allowed: it names a folder; use up to {LONGEST} letters, digits, '_', '-'"
+        )
     check_engine(composed["engine"])
     timeout = composed["case_timeout"]
     if timeout is not None and not (is_number(timeout) and 0 < timeout < math.inf):
@@ -357,9 +363,10 @@ def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, 
             where = f"{experiment}.cases.{name}".rstrip(".")
             raise InputError(f"{where} = {case} is not allowed: cases are names with what each changes")
     for name, overrides in _expanded(given or {"default": {}}, names, experiment, base):
-        if name == "summary" or not re.fullmatch(CASE, name):
+        if name == "summary" or not re.fullmatch(CASE, name) or len(name) > LONGEST:
             raise InputError(
-                f"{experiment}.cases: '{name}' is not allowed as a name: use letters, digits and '_', and not 'summary'"
+                f"{experiment}.cases: '{name[:80]}' is not allowed as a name: use up to {LONGEST} letters, digits and "
+                "'_', and not 'summary'"
             )
         if twin := next((known for known in result if known != name and known.lower() == name.lower()), None):
             raise InputError(

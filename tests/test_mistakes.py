@@ -63,7 +63,7 @@ def test_null_still_turns_a_number_off_that_is_no_quantity(toy: Path) -> None:
     [
         (b"only: [a\n b: c: d\n", "bad.yaml is no YAML file: while parsing a flow sequence"),
         (b"\tonly: decay\n", "bad.yaml is no YAML file"),
-        (b"only: caf\xe9\n", "bad.yaml is no YAML file: 'utf-8' codec"),
+        (b"# mine\nonly: caf\xe9\n", "bad.yaml: line 2 is not UTF-8; save the file as UTF-8"),
         (b"- a\n", "bad.yaml holds no keys"),
     ],
 )

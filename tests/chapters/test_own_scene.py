@@ -202,6 +202,8 @@ FIXED = "{_target_: dexrepro.control.holding.FixedDistance, dt: 1, displacement:
             "{_target_: fractions.Fraction}",
             "scene law Fraction must declare its kind, one of joint, end_p",
         ),
+        ("law", "null", "scene.law = null is not allowed: name a law, or cases that each name one"),
+        ("name", "n" * 61, "scene.name = n.* is not allowed: it names a folder; use up to 60 letters"),
         ("start", "[0.1]", r"scene.start = \[0.1\] is not allowed: it must be 2 joint angles"),
         ("start", "5", "scene.start = 5 is not allowed: it must be 2 joint angles"),
         ("offset", "[0,0]", r"scene.offset = \[0, 0\] is not allowed: it must be three numbers"),

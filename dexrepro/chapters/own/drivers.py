@@ -99,6 +99,8 @@ def driver(config: Config, leader: Path, start: Array) -> tuple[Callable[[Sense]
     elif kind == "holding":
         controller = holding = Holding(law, config, beside(0.0).position, start)
     else:
+        if law is None:
+            raise InputError("scene.law = null is not allowed: name a law, or cases that each name one")
         raise InputError(f"scene law {type(law).__name__} must declare its kind, one of {', '.join(KINDS)}")
     reference = (lambda _: holding.reference) if kind == "holding" else (lambda time: beside(time).position)
     return (Limited(controller, support=model) if config.gravity_compensation else controller), reference
