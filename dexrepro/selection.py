@@ -47,6 +47,8 @@ def selected(words: Iterable[str], command: str) -> Selection:
     extra = [key for key in TAKEN[command] if key not in (*SELECTION, "workers")]
     values = dict(text.partition("=")[::2] for text in overrides)
     numbers, _ = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
+    if chapters.OWN in numbers and command in ("check", "crosscheck", "study"):
+        raise InputError(f"chapter = {chapters.OWN} is not allowed for {command}: scenes of your own have no claims")
     only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]
     if only or "figure" in values:
         figure = values.get("figure", "").strip("'\"") or None

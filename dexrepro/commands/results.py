@@ -21,6 +21,8 @@ def list_command(options: argparse.Namespace) -> int:
     """Everything there is, as text or JSON; or the claims of the book counted, as the README's table."""
     from dexrepro.report.listing import listing
 
+    if len(forms := [form for form in ("json", "markdown", "schema") if getattr(options, form)]) > 1:
+        raise InputError(f"--{forms[0]} and --{forms[1]} exclude each other: give one of them")
     if options.markdown:
         from dexrepro import scoreboard
 
@@ -54,10 +56,10 @@ def list_command(options: argparse.Namespace) -> int:
 def show_command(options: argparse.Namespace) -> int:
     """``dexrepro show NAME ...``: all there is about a claim, figure, equation, symbol, law, parameter, experiment."""
     from dexrepro.report.show import show
-    from dexrepro.selection import selected
+    from dexrepro.selection import existing, selected
 
     keyed = [word for word in options.selection if word.startswith("results=")]
-    results = selected(keyed, "show").results
+    results = existing(selected(keyed, "show").results)
     if not (names := [word for word in options.selection if word not in keyed]):
         raise InputError("show needs a name, such as C4.01, 2.7, 2.32, k_o or movement_estimation")
     for name in names:

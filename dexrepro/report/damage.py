@@ -36,6 +36,8 @@ def check_result(folder: Path, *names: str, series: bool = False) -> Experiment:
 
     Raises InputError where one of its files cannot be used: run.json, ``names`` and, if asked, its series.
     """
+    if not (folder / "run.json").exists():
+        raise InputError(f"{folder} holds no result (no run.json)")
     run = _read(folder / "run.json")
     _require(folder / "run.json", run, RUN)
     for case, entry in run["cases"].items():

@@ -84,7 +84,7 @@ def test_a_run_with_other_parameters_is_drawn_beside_the_books(toy_result: Path,
 
 
 @pytest.mark.parametrize(("words", "sentence"), [
-    ("results/runs/none style=dark", "results/runs/none/run.json cannot be used"),
+    ("results/runs/none style=dark", "results/runs/none holds no result"),
     ("results/chapter90/decay only=decay", "only: a folder says which result; leave out one of the two"),
 ])  # fmt: skip
 def test_a_folder_without_a_result_is_refused(toy_result: Path, command: Command, words: str, sentence: str) -> None:
