@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 import subprocess
 import sys
 import tomllib
+from importlib.metadata import packages_distributions
 
 import pytest
 import yaml
@@ -44,6 +46,17 @@ def test_every_dependency_is_pinned_and_in_the_conda_environment() -> None:
     pinned = {name.lower().replace("_", "-") for name, *_ in PINS}
     extras = [line for extra in ("dev", "docs") for line in PROJECT["optional-dependencies"][extra]]
     assert {*needed, *requirements(extras)} <= pinned
+
+
+def test_what_the_package_imports_is_a_dependency_of_it() -> None:
+    trees = [ast.parse(path.read_text("utf-8")) for path in (ROOT / "dexrepro").rglob("*.py")]
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    named = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+    named += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom) and not node.level]
+    tops = {name.partition(".")[0] for name in named} - {"dexrepro", *sys.stdlib_module_names}
+    homes = packages_distributions()
+    declared = requirements([*PROJECT["dependencies"], *PROJECT["optional-dependencies"]["data"]])
+    assert not {top for top in tops if not {name.lower() for name in homes.get(top, [top])} & {*declared}}
 
 
 def test_the_manual_says_why_of_every_dependency() -> None:
