@@ -39,7 +39,7 @@ def run(chapter: int | str, overrides: list[str] | None = None, **settings: Any)
     plans, _ = plan_chapter(str(chapter), [*given, *map(quoted, overrides or [])])
     outcome = run_plans(plans, workers=workers, force=force, progress=of_session())
     if outcome.failures:
-        raise RuntimeError("; ".join(f"{name} failed: {text}" for name, text in outcome.failures.items()))
+        raise RuntimeError(outcome.failed)
     return Results((name, Result(folder)) for name, folder in outcome.folders.items())
 
 

@@ -71,7 +71,7 @@ def run(
     plans = [plan for plan in plan_chapter(chapter, words)[0] if uses_engine(loaded.experiment(plan.experiment))]
     outcome = run_plans(plans, workers=workers, force=False, progress=progress)
     if outcome.failures:
-        raise InputError("; ".join(f"{name} failed: {text}" for name, text in outcome.failures.items()))
+        raise InputError(outcome.failed)
     return [compare(plan, outcome.folders[plan.experiment]) for plan in plans]
 
 

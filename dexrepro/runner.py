@@ -11,6 +11,7 @@ import subprocess
 import time
 import warnings
 import zlib
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
@@ -53,7 +54,7 @@ KEPT, RECENT = 6, 7 * 24 * 3600  # cached results a case: so many, and all of th
 
 @dataclass
 class Outcome:
-    """What a run did: result folders, failures as sentences, experiments skipped with the reason.
+    """What a run did: result folders and failures as sentences, by name; in what experiments differ from the book.
 
     unusable: cases that a law of the user's ended by giving no number, as sentences; there is a result up to then.
     """
@@ -61,8 +62,12 @@ class Outcome:
     folders: dict[str, Path] = field(default_factory=dict)
     failures: dict[str, str] = field(default_factory=dict)
     unusable: dict[str, str] = field(default_factory=dict)
-    skipped: dict[str, str] = field(default_factory=dict)
     differs: dict[str, list[str]] = field(default_factory=dict)
+
+    @property
+    def failed(self) -> str:
+        """What failed, and why, in one line ("" where nothing did)."""
+        return "; ".join(f"{name} failed: {text}" for name, text in self.failures.items())
 
     def reasons(self) -> dict[str, list[str]]:
         """What failed, by the sentence that says why."""
@@ -378,82 +383,121 @@ def _prune(plan: Plan) -> None:
 
 def run_plans(plans: Sequence[Plan], *, workers: int | None, force: bool, progress: Silent | None = None) -> Outcome:
     """Run what is missing, assemble each experiment as its last case ends; a failing case does not stop the others."""
-    progress = progress or Silent()
-    outcome = Outcome(differs={plan.experiment: plan.differs for plan in plans if plan.chapter != chapters.OWN})
     parents = {folder.parent for plan in plans for folder in (Path(plan.jobs[0].folder), plan.folder)}
     for parent in parents:
         remove_leftovers(parent)
-    waiting: dict[str, set[str]] = {}
-    todo: list[Job] = []
-    again: list[Plan] = []
-    for plan in plans:
-        if not force and up_to_date(plan):
+    run = _Run(plans, force, progress or Silent())
+    if run.waiting or run.again:
+        try:
+            run.work(workers)
+        finally:
+            for parent in parents:  # of workers that were ended
+                remove_leftovers(parent)
+    run.outcome.unusable = _unusable(plans, run.outcome.folders)
+    return run.outcome
+
+
+class _Run:
+    """Plans on their way to results.
+
+    todo: cases to run; waiting: those of each experiment without which it cannot be assembled; again: plans whose
+    result is only to be presented again; repeated: experiments of which the cache had lost a case on the way.
+    """
+
+    def __init__(self, plans: Sequence[Plan], force: bool, progress: Silent) -> None:
+        self.plans, self.force, self.progress = {plan.experiment: plan for plan in plans}, force, progress
+        self.outcome = Outcome(
+            differs={plan.experiment: plan.differs for plan in plans if plan.chapter != chapters.OWN}
+        )
+        self.todo: list[Job] = []
+        self.waiting: dict[str, set[str]] = {}
+        self.again: list[Plan] = []
+        self.repeated: set[str] = set()
+        for plan in plans:
+            self._sort_in(plan)
+        # An experiment of few cases has long ones: they begin, and the short ones of others fill the gaps at the end.
+        self.todo.sort(key=lambda job: len(self.plans[job.experiment].jobs))
+
+    def _sort_in(self, plan: Plan) -> None:
+        """Take a result as it is, have it presented again, or run what the cache lacks of it."""
+        if not self.force and up_to_date(plan):
             log.info("%s: up to date in %s", plan.experiment, plan.folder)
-            outcome.folders[plan.experiment] = plan.folder
-            continue
-        missing = [job for job in plan.jobs if force or stored_case(job) is None]
-        if missing and not force and up_to_date(plan, presented=False):  # it has what the cache has lost
-            again.append(plan)
-            continue
-        log.info("%s: %s; %d of %d cases are cached", plan.experiment, "force=true" if force else _why_again(plan),
-                 len(plan.jobs) - len(missing), len(plan.jobs))  # fmt: skip
+            self.outcome.folders[plan.experiment] = plan.folder
+            return
+        missing = [job for job in plan.jobs if self.force or stored_case(job) is None]
+        if missing and not self.force and up_to_date(plan, presented=False):  # it has what the cache has lost
+            self.again.append(plan)
+            return
+        why = "force=true" if self.force else _why_again(plan)
+        cached, all_ = len(plan.jobs) - len(missing), len(plan.jobs)
+        log.info("%s: %s; %d of %d cases are cached", plan.experiment, why, cached, all_)
         for job in missing:
             log.info("%s: %s", job.name, _why_run(job))
-            if Path(job.folder).exists() and not force:
-                progress.note(f"{job.name} is damaged in {Path(job.folder).parent}: run again")
-        waiting[plan.experiment] = {job.case for job in missing}
-        todo += missing
-    if not waiting and not again:
-        outcome.unusable = _unusable(plans, outcome.folders)
-        return outcome
-    by_name = {plan.experiment: plan for plan in plans}
-    # An experiment of few cases has long ones: they begin, and the short ones of the others fill the gaps at the end.
-    todo.sort(key=lambda job: len(by_name[job.experiment].jobs))
-    import dexrepro.physics.world  # noqa: F401  imported once, before the processes fork
+            if Path(job.folder).exists() and not self.force:
+                self._note_damage(job)
+        self.waiting[plan.experiment] = {job.case for job in missing}
+        self.todo += missing
+
+    def _note_damage(self, job: Job) -> None:
+        self.progress.note(f"{job.name} is damaged in {Path(job.folder).parent}: run again")
+
+    def work(self, workers: int | None) -> None:
+        """Do all of it in one pool."""
+        _load_engines(self.todo)
+        here = any(job.gui or (start_method() != "fork" and "__main__." in str(job.config)) for job in self.todo)
+        with Pool(workers, self.progress.report, here, self.progress.tick) as pool:
+            for job in self.todo:
+                pool.add(job, execute if self.force else complete, job, timeout=job.timeout)
+            for plan in (self.plans[name] for name, cases in self.waiting.items() if not cases):
+                pool.add(plan, assemble, plan)
+            for plan in self.again:
+                pool.add(plan, redraw, plan.chapter, plan.experiment, plan.folder)
+            self.progress.begin([job.name for job in self.todo], pool.size)
+            for task, value in pool.results():
+                if isinstance(value, Failure):
+                    self._failed(task, value)
+                elif isinstance(task, Job):
+                    self._finished(task, value, pool)
+                else:
+                    self._assembled(task, value, pool)
+
+    def _failed(self, task: Job | Plan, failure: Failure) -> None:
+        name = task.name if isinstance(task, Job) else task.experiment
+        self.outcome.failures[name] = _kept_failure(task, failure)
+        if isinstance(task, Job):
+            self.progress.failed(name, self.outcome.failures[name])
+
+    def _finished(self, job: Job, entry: CaseEntry, pool: Pool) -> None:
+        """Assemble the experiment whose last case this was."""
+        self.progress.finished(job.name, entry)
+        self.waiting[job.experiment].discard(job.case)
+        if not self.waiting[job.experiment]:
+            plan = self.plans[job.experiment]
+            pool.add(plan, assemble, plan, first=True)
+
+    def _assembled(self, plan: Plan, lost: Sequence[Job] | None, pool: Pool) -> None:
+        """Done, unless the cache has lost cases meanwhile (of which the sizes were right, the bytes are not)."""
+        if not lost:
+            self.outcome.folders[plan.experiment] = plan.folder
+            self.progress.assembled(plan.experiment)
+        elif plan.experiment in self.repeated:
+            self.outcome.failures[plan.experiment] = f"{Path(lost[0].folder).parent} does not keep what is written"
+        else:
+            self.repeated.add(plan.experiment)
+            self.waiting[plan.experiment] = {job.case for job in lost}
+            for job in lost:
+                self._note_damage(job)
+                pool.add(job, execute, job, timeout=job.timeout, first=True)
+
+
+def _load_engines(jobs: Sequence[Job]) -> None:
+    """Import what simulates arms once, before the processes fork."""
+    import dexrepro.physics.world  # noqa: F401
     from dexrepro.physics import engine
 
-    for word in filter(engine.is_installed, {job.config.get("engine", engine.REFERENCE) for job in todo}):
+    for word in filter(engine.is_installed, {job.config.get("engine", engine.REFERENCE) for job in jobs}):
         engine.use(word)
         engine.engine()
-    here = any(job.gui or (start_method() != "fork" and "__main__." in str(job.config)) for job in todo)
-    try:
-        with Pool(workers, progress.report, here, progress.tick) as pool:
-            for job in todo:
-                pool.add(job, execute if force else complete, job, timeout=job.timeout)
-            for name in (name for name, cases in waiting.items() if not cases):
-                pool.add(by_name[name], assemble, by_name[name])
-            for plan in again:
-                pool.add(plan, redraw, plan.chapter, plan.experiment, plan.folder)
-            progress.begin([job.name for job in todo], pool.size)
-            repeated: set[str] = set()
-            for task, value in pool.results():
-                plan = by_name[task.experiment]
-                if isinstance(value, Failure):
-                    name = task.name if isinstance(task, Job) else task.experiment
-                    outcome.failures[name] = _failed(task, value)
-                    if isinstance(task, Job):
-                        progress.failed(task.name, outcome.failures[name])
-                elif isinstance(task, Job):
-                    progress.finished(task.name, value)
-                    waiting[task.experiment].discard(task.case)
-                    if not waiting[task.experiment]:
-                        pool.add(plan, assemble, plan, first=True)
-                elif not value:
-                    outcome.folders[task.experiment] = task.folder
-                    progress.assembled(task.experiment)
-                elif task.experiment in repeated:
-                    outcome.failures[task.experiment] = f"{Path(value[0].folder).parent} does not keep what is written"
-                else:  # the sizes were right, the bytes are not
-                    repeated.add(task.experiment)
-                    waiting[task.experiment] = {job.case for job in value}
-                    for job in value:
-                        progress.note(f"{job.name} is damaged in {Path(job.folder).parent}: run again")
-                        pool.add(job, execute, job, timeout=job.timeout, first=True)
-    finally:
-        for parent in parents:  # of workers that were ended
-            remove_leftovers(parent)
-    outcome.unusable = _unusable(plans, outcome.folders)
-    return outcome
 
 
 def _unusable(plans: Sequence[Plan], folders: Mapping[str, Path]) -> dict[str, str]:
@@ -506,7 +550,7 @@ def up_to_date(plan: Plan, presented: bool = True) -> bool:
         return False
 
 
-def _failed(task: Job | Plan, failure: Failure) -> str:
+def _kept_failure(task: Job | Plan, failure: Failure) -> str:
     """Keep why a task failed beside the cached cases; the sentence about it, which says whether it did so before."""
     job = task if isinstance(task, Job) else task.jobs[0]
     path = Path(job.folder).parent / f"{task.case if isinstance(task, Job) else 'assemble'}.error.txt"
@@ -525,9 +569,7 @@ def summary_rows(outcome: Outcome) -> list[dict[str, Any]]:
     rows = []
     for name, folder in outcome.folders.items():
         run, claims = read_json(folder / "run.json"), read_json(folder / "claims.json")
-        verdicts: dict[str, int] = {}
-        for claim in claims:
-            verdicts[claim["verdict"]] = verdicts.get(claim["verdict"], 0) + 1
+        verdicts = dict(Counter(claim["verdict"] for claim in claims))
         timing = {key: run[key] for key in ("wall", "simulated", "real_time_factor")}
         doubts = sorted({text for entry in run["cases"].values() for text in entry.get("warnings", ())})
         rows.append({"experiment": name, "folder": str(folder), "claims": verdicts, "warnings": doubts, **timing})

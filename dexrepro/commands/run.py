@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
 from dexrepro.commands import FAILED, OK, SHOWN, command, option, out, say, warn
 from dexrepro.errors import InputError, importable
 from dexrepro.keys import SELECTION
+
+if TYPE_CHECKING:
+    from dexrepro.plan import Plan
+    from dexrepro.runner import Outcome
 
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--info", "-i", "--hydra-help", "--resolve")
 WITHOUT_PYBULLET = (
@@ -91,7 +95,7 @@ def run_overrides(overrides: Sequence[str], extra_dir: str | None = None) -> int
     return FAILED if failures else OK
 
 
-def _sentences(outcome: Any) -> list[str]:
+def _sentences(outcome: Outcome) -> list[str]:
     """What failed, and under which values that are not the book's, which may be the reason."""
     said = []
     for reason, names in outcome.reasons().items():
@@ -107,16 +111,16 @@ def _differs(name: str, differs: Sequence[str]) -> list[str]:
     return [f"{name} differs from the book in: {named}"] if differs else []
 
 
-def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
+def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
     from dexrepro.config import compose_chapter
     from dexrepro.physics.engine import REFERENCE
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
-    from dexrepro.runner import Outcome, run_plans, summary_rows
+    from dexrepro.runner import run_plans, summary_rows
     from dexrepro.selection import chapters_of, of_chapter, positive_workers
 
     numbers, rest = chapters_of(overrides, extra_dir)
-    plans: list[Any] = []
+    plans: list[Plan] = []
     skipped: dict[str, str] = {}
     settings: dict[str, Any] = {}
     workers = None
@@ -133,10 +137,9 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Any:
     progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
     with progress if isinstance(progress, Bar) else nullcontext():
         force = bool(settings.get("force"))
-        outcome: Outcome = run_plans(plans, workers=workers, force=force, progress=progress)
-    outcome.skipped = skipped
+        outcome = run_plans(plans, workers=workers, force=force, progress=progress)
     if not quiet:
-        _print_summary(outcome)
+        _print_summary(outcome, skipped)
     for text in dict.fromkeys(text for row in summary_rows(outcome) for text in row["warnings"]):
         warn(f"warning: {text}")
     return outcome
@@ -166,7 +169,7 @@ def _run_job(config: Any) -> None:
         raise JobFailed("; ".join(failures))
 
 
-def _print_summary(outcome: Any) -> None:
+def _print_summary(outcome: Outcome, skipped: Mapping[str, str]) -> None:
     from dexrepro.claims import NOT_EVALUATED, VERDICTS
     from dexrepro.runner import summary_rows
 
@@ -183,7 +186,7 @@ def _print_summary(outcome: Any) -> None:
         counts = [str(verdicts.get(key, 0) or "") for key in shown]
         table.add_row(row["experiment"], f"{row['wall']:.1f}", factor, *counts, row["folder"])
     out.print(table)
-    for name, reason in outcome.skipped.items():
+    for name, reason in skipped.items():
         say(f"{name} skipped: {reason}")
     for name, differs in outcome.differs.items():
         for line in _differs(name, differs) if name in outcome.folders else ():
@@ -194,7 +197,7 @@ def _print_summary(outcome: Any) -> None:
         out.print("claims whose metrics this run does not have are not evaluated")
 
 
-def _claims_to_name(outcome: Any) -> list[str]:
+def _claims_to_name(outcome: Outcome) -> list[str]:
     from dexrepro.baselines import Baseline
     from dexrepro.report import verdicts
     from dexrepro.storage import read_json
