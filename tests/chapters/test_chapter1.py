@@ -1,12 +1,12 @@
-import copy
-from functools import cache
+from functools import partial
 
+import cases
 import numpy as np
 import pandas as pd
 import pytest
+from cases import rng
 
 from dexrepro import baselines, chapters
-from dexrepro.case import generator, live
 from dexrepro.chapters.chapter1.dartboard import experiment as dartboard
 from dexrepro.chapters.chapter1.force_tracking import experiment as force_tracking
 from dexrepro.chapters.chapter1.hand_over import experiment as hand_over
@@ -18,24 +18,12 @@ from dexrepro.chapters.chapter1.ready_to_hold import experiment as ready_to_hold
 from dexrepro.chapters.chapter1.sensitivity import experiment as sensitivity
 from dexrepro.chapters.chapter1.two_nuts import experiment as two_nuts
 from dexrepro.claims import TIE
-from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.holding import AutoregressiveHolding, FixedDistance
 from dexrepro.experiment import Config, Recording
 from dexrepro.measures import rms
 from dexrepro.physics.soft_object import Cushion
 
-
-@cache
-def cases(experiment):
-    return experiment_cases(compose_chapter("1"), experiment)
-
-
-def case(experiment, name, **changes):
-    return live({**copy.deepcopy(cases(experiment)[name]), **changes, "perturbation": 0.0, "seed": 0, "case": name})
-
-
-def rng(experiment):
-    return lambda purpose: generator(0, experiment, purpose)
+case = partial(cases.case, "1")
 
 
 def test_simulated_arms_agree_with_the_line():
@@ -73,8 +61,8 @@ def test_a_dropped_object_has_the_worst_score_whenever_it_fell():
 
 
 def test_the_sensitivity_study_moves_as_the_figure_does():
-    composed = compose_chapter("1", ["force_tracking.ramp_speed=0.02", "force_tracking.law.gain=0.2"])
-    config = experiment_cases(composed, "sensitivity")["tracking"]
+    given = ("force_tracking.ramp_speed=0.02", "force_tracking.law.gain=0.2")
+    config = cases.resolved("1", "sensitivity", "tracking", *given)
     partner, _ = sensitivity._motions(Config.of(config))
     assert partner[1, 0] == pytest.approx(0.02 * 1e-3)
     assert config["figure"]["law"]["gain"] == 0.2

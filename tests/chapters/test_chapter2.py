@@ -2,39 +2,26 @@
 
 from __future__ import annotations
 
-import copy
-from functools import cache, partial
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
+import cases
 import numpy as np
 import pandas as pd
 import pytest
 
 from dexrepro import baselines, chapters
-from dexrepro.case import live
 from dexrepro.chapters.chapter2 import balloon_pair, batch, planar_pair
 from dexrepro.chapters.chapter2.balloon_movement import experiment as balloon_movement
 from dexrepro.chapters.chapter2.balloon_static.figures import _off
 from dexrepro.chapters.chapter2.holding_line import experiment as holding_line
 from dexrepro.chapters.chapter2.holding_sensitivity.experiment import margins_of
 from dexrepro.chapters.chapter2.movement_estimation import experiment as movement_estimation
-from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
 from dexrepro.plan import plan_chapter
 
-cases = cache(partial(experiment_cases, compose_chapter("2")))
-
-
-def case(experiment: str, name: str, **changes: Any) -> Config:
-    values = copy.deepcopy(cases(experiment)[name]) | {"perturbation": 0.0, "seed": 0, "case": name}
-    for key, value in changes.items():
-        node = values
-        *parents, last = key.split("__")
-        for parent in parents:
-            node = node[parent]
-        node[last] = value
-    return live(values)
+case = partial(cases.case, "2")
 
 
 def logged(controller: Any) -> tuple[Any, list[Any]]:

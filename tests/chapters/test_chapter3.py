@@ -1,10 +1,11 @@
 import json
+from functools import partial
 
+import cases
 import numpy as np
 import pytest
 
-from dexrepro import baselines, chapters, config
-from dexrepro.case import live
+from dexrepro import baselines, chapters
 from dexrepro.chapters.chapter3 import reach, scene
 from dexrepro.chapters.chapter3.external_push import experiment as external_push
 from dexrepro.chapters.chapter3.fixed_opening import experiment as fixed_opening
@@ -14,29 +15,8 @@ from dexrepro.experiment import Config
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.kinematics import jacobian, point_jacobian
 
-
-@pytest.fixture(scope="module")
-def composed():
-    """The shipped configuration with the cases that the tests use alone: resolving all takes seconds."""
-    values = config.compose_chapter("3")
-    for experiment, names in USED.items():
-        values[experiment]["cases"] = {name: values[experiment]["cases"][name] for name in names}
-    return {experiment: config.experiment_cases(values, experiment) for experiment in USED}
-
-
-USED = {
-    "fixed_opening": ("reach1", "reach2", "reach3", "reach4", "straight3"),
-    "moving_opening": ("track",),
-    "settling_time": ("printed",),
-}
-
-
+case = partial(cases.case, "3")
 MIDDLE = (0.005, 0.0, 0.0836)  # m, of the forearm in its frame
-
-
-def case(composed, experiment, name, **changes):
-    values = {**composed[experiment][name], "perturbation": 0.0, "seed": 0, "case": name, **changes}
-    return live(values)
 
 
 def random(purpose):
@@ -59,18 +39,18 @@ def test_start_is_the_untucked_arm_lifted():
     assert lifted - untucked == pytest.approx([0, 0, 0.12], abs=1e-5)
 
 
-def test_every_reach_has_its_opening_and_target_inside_the_box(composed):
+def test_every_reach_has_its_opening_and_target_inside_the_box():
     for n in fixed_opening.REACHES:
-        values = case(composed, "fixed_opening", f"reach{n}")
+        values = case("fixed_opening", f"reach{n}")
         for point, margin in ((values.centre, values.box.opening / 2), (values.target, 0.05)):
             for p, m, s in zip(point, values.box.middle, values.box.size):
                 assert s / 2 - abs(p - m) >= margin - 1e-9
         assert values.target[2] > values.centre[2] - values.box.height
 
 
-def test_a_quick_reach_arrives_without_touching_and_a_straight_one_touches(composed):
+def test_a_quick_reach_arrives_without_touching_and_a_straight_one_touches():
     for name, touches in (("reach3", False), ("straight3", True)):
-        values = case(composed, "fixed_opening", name, phases=[1.5, 1.0, 0.3])
+        values = case("fixed_opening", name, phases=[1.5, 1.0, 0.3])
         recording = fixed_opening.simulate(values, random)
         metrics = fixed_opening.measure(recording, values)
         assert (metrics["contact_time"] > 0) == touches
@@ -86,8 +66,8 @@ def test_distance_is_zero_where_the_tip_is_at_the_opening():
     assert scene.distance_to_centre(arm, q, tip) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_reference_is_continuous_and_ends_at_the_target(composed):
-    values = case(composed, "fixed_opening", "reach1")
+def test_reference_is_continuous_and_ends_at_the_target():
+    values = case("fixed_opening", "reach1")
     start, axis, centre = np.array([0.58, -0.18, 0.22]), np.array([0.0, 0.0, -1.0]), np.array(values.centre)
     reference = reach.Reference(values, start, axis, centre)
     times = np.arange(0.0, sum(values.phases), 0.01)
@@ -104,16 +84,16 @@ def test_push_is_a_trapezoid():
     assert [force(t)[1] for t in (0.9, 1.05, 1.5, 2.45, 2.6)] == pytest.approx([0, 15, 30, 15, 0])
 
 
-def test_opening_moves_for_one_period_and_returns(composed):
-    values = case(composed, "moving_opening", "track")
+def test_opening_moves_for_one_period_and_returns():
+    values = case("moving_opening", "track")
     path, start = moving_opening.path(values), values.motion.start
     assert path(0.0) == pytest.approx(values.centre)
     assert path(start + values.motion.period) == pytest.approx(values.centre, abs=1e-12)
     assert path(start + 2.5)[0] == pytest.approx(values.centre[0] + 0.05)
 
 
-def test_energy_of_the_error_dynamics_falls_and_large_errors_wait_hardly_longer(composed):
-    values = case(composed, "settling_time", "printed")
+def test_energy_of_the_error_dynamics_falls_and_large_errors_wait_hardly_longer():
+    values = case("settling_time", "printed")
     plant = settling_time.ErrorDynamics(values)
     direction = np.array([1.0, -0.5, 0.3, 0.8, -0.2, 0.4, 0.1])
     direction /= np.linalg.norm(direction)

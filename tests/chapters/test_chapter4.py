@@ -1,46 +1,30 @@
 """Chapter 4: the arms, references and measures that its experiments are made of, and short runs of each."""
 
-import copy
-import functools
 import math
+from functools import partial
 
+import cases
 import numpy as np
 import pytest
 
-from dexrepro import chapters, runner
+from dexrepro import chapters
 from dexrepro.chapters.chapter4 import measures, payload_arm, two_link
-from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.robots import kinematics
 from dexrepro.robots.baxter import baxter
 from dexrepro.robots.inverse_kinematics import nearest
 
-
-@functools.cache
-def cases(experiment):
-    return experiment_cases(compose_chapter("4"), experiment)
+case = partial(cases.case, "4")
 
 
-def configured(experiment, case, **changes):
-    """The live configuration of a case, with top-level or dotted changes."""
-    config = copy.deepcopy(cases(experiment)[case])
-    for key, value in changes.items():
-        *parents, last = key.split("__")
-        node = config
-        for parent in parents:
-            node = node[parent]
-        node[last] = value
-    return runner.live({**config, "perturbation": 0.0, "seed": 0, "case": case})
-
-
-def simulated(experiment, case, **changes):
-    config = configured(experiment, case, **changes)
+def simulated(experiment, name, **changes):
+    config = case(experiment, name, **changes)
     module = chapters.load("4").experiment(experiment).simulation
     recording = module.simulate(config, lambda purpose: np.random.default_rng(0))
     return recording, module.measure(recording, config)
 
 
 def test_gravity_torque_of_the_arm_in_the_world_is_the_known_one():
-    config = configured("skill_reuse", "broad20")
+    config = case("skill_reuse", "broad20")
     with two_link.scene(config) as world:
         model_torque = world.run(config.step, {"arm": lambda sense: np.array([98.0, 24.5])}, control_period=config.step)
     assert np.abs(model_torque["arm.velocity"]).max() < 1e-12
@@ -48,7 +32,7 @@ def test_gravity_torque_of_the_arm_in_the_world_is_the_known_one():
 
 @pytest.mark.parametrize("reference", [two_link.ellipse, lambda c, d: two_link.stroke(c, 45, d)])
 def test_references_are_consistent_derivatives(reference):
-    config = configured("skill_reuse", "broad20")
+    config = case("skill_reuse", "broad20")
     motion = reference(config, 2.0)
     velocity = np.gradient(motion.position, config.step, axis=0)[1:-1]
     acceleration = np.gradient(motion.velocity, config.step, axis=0)[1:-1]
@@ -57,7 +41,7 @@ def test_references_are_consistent_derivatives(reference):
 
 
 def test_ellipse_follows_the_printed_equation_and_strokes_are_its_diameters():
-    config = configured("skill_reuse", "broad20")
+    config = case("skill_reuse", "broad20")
     x, y = two_link.ellipse(config, 5.0).position.T
     assert (x - 1) ** 2 / 0.09 + y**2 / 0.04 == pytest.approx(1.0)
     for angle in config.task.stroke_angles:
@@ -73,7 +57,7 @@ def test_minimum_jerk_segments_rest_at_every_point():
 
 
 def test_all_printed_points_are_within_reach_from_the_preferred_posture():
-    config = configured("payload_transfer", "reuse")
+    config = case("payload_transfer", "reuse")
     arm = baxter("right")
     for point in (config.task.home, *config.task.starts, *config.task.ends):
         q = nearest(arm, config.task.posture, point, task="position", settle=400)

@@ -1,7 +1,9 @@
-from functools import cache
+from functools import partial
 
+import cases
 import numpy as np
 import pytest
+from cases import rng
 
 from dexrepro.case import generator
 from dexrepro.chapters.chapter6 import bimanual, learning, plane
@@ -10,28 +12,12 @@ from dexrepro.chapters.chapter6.constraint_cases import experiment as constraint
 from dexrepro.chapters.chapter6.keep_out import experiment as keep_out
 from dexrepro.chapters.chapter6.obstacle_terms import experiment as obstacle_terms
 from dexrepro.chapters.chapter6.planar_constraint import experiment as planar_constraint
-from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
 from dexrepro.humans.segmentation import pauses
 from dexrepro.primitives.barrier import Constraint
 from dexrepro.primitives.constrained import LAWS, Reference, rollout
 
-
-@cache
-def cases(experiment: str) -> dict:
-    return experiment_cases(compose_chapter("6"), experiment)
-
-
-def case(experiment: str, name: str, **changes: object) -> Config:
-    """A case of the shipped configuration with some dotted keys changed."""
-    config = Config.of({**cases(experiment)[name], "perturbation": 0.0})
-    for dotted, value in changes.items():
-        *path, last = dotted.split("__")
-        node = config
-        for key in path:
-            node = node[key]
-        node[last] = value
-    return config
+case = partial(cases.case, "6")
 
 
 def lesson(config: Config) -> plane.Lesson:
@@ -108,7 +94,7 @@ def test_unit_of_length_matters_for_the_printed_barrier_weight_alone():
 
 def test_consistent_law_ignores_the_learned_weights():
     config = case("planar_constraint", "consistent", demonstrations__groups=1)
-    recording = planar_constraint.simulate(config, lambda purpose: generator(0, "planar_constraint", purpose))
+    recording = planar_constraint.simulate(config, rng("planar_constraint"))
     metrics = planar_constraint.measure(recording, config)
     assert metrics["weight_effect"] < 1e-12
     assert metrics["e_max"] < 0.02
@@ -118,7 +104,7 @@ def test_fixed_steps_agree_with_halved_steps():
     paths = []
     for step in (0.008, 0.004, 0.002):
         config = case("planar_constraint", "feedforward", demonstrations__groups=1, step=step)
-        recording = planar_constraint.simulate(config, lambda purpose: generator(0, "planar_constraint", purpose))
+        recording = planar_constraint.simulate(config, rng("planar_constraint"))
         paths.append(planar_constraint.measure(recording, config)["e_max"])
     assert abs(paths[2] - paths[1]) < 0.6 * abs(paths[1] - paths[0])
     assert paths[2] == pytest.approx(paths[1], rel=0.02)
@@ -176,7 +162,7 @@ def test_detour_on_the_arm_stays_clear_of_the_new_box_by_wrist_and_margin():
 
 def along(name: str, **changes: object) -> dict[str, float | None]:
     config = case("planar_constraint", name, demonstrations__groups=1, **changes)
-    recording = planar_constraint.simulate(config, lambda purpose: generator(0, "planar_constraint", purpose))
+    recording = planar_constraint.simulate(config, rng("planar_constraint"))
     assert (recording.status == "finished") == (not recording.frames["groups"].violated_from.notna().any())
     return planar_constraint.measure(recording, config)
 
@@ -222,7 +208,7 @@ def test_a_bar_that_a_path_stops_before_is_not_passed():
 
 def test_an_outside_run_that_steps_over_its_barrier_has_no_goal_error():
     config = case("keep_out", "still_printed", offsets=[0.3], speeds=[0])
-    recording = keep_out.simulate(config, lambda purpose: generator(0, "keep_out", purpose))
+    recording = keep_out.simulate(config, rng("keep_out"))
     found = keep_out.measure(recording, config)
     assert recording.status.startswith("stepped over the barrier at")
     assert found["goal_error"] is found["goal_error_worst"] is None
@@ -232,7 +218,7 @@ def test_an_outside_run_that_steps_over_its_barrier_has_no_goal_error():
 def test_the_lyapunov_function_rises_near_the_bound_without_the_barriers_share_of_the_gain():
     for name in ("asymmetric_inside", "symmetric_inside", "symmetric_outside", "asymmetric_outside"):
         config = case("constraint_cases", name)
-        recording = constraint_cases.simulate(config, lambda purpose: generator(0, "constraint_cases", purpose))
+        recording = constraint_cases.simulate(config, rng("constraint_cases"))
         found = constraint_cases.measure(recording, config)
         assert found["rising_near_bound"] == 0
         assert found["rising_without_share"] > 100

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import shlex
+from functools import partial
 from typing import Any
 
+import cases
 import numpy as np
 import pytest
 
 from dexrepro import baselines, chapters
-from dexrepro.case import live
 from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.chapters.chapter7.fuzzy_generalisation import experiment as fuzzy_generalisation
 from dexrepro.chapters.chapter7.impedance_stability import experiment as impedance_stability
@@ -17,7 +18,6 @@ from dexrepro.chapters.chapter7.obstacle_contact import experiment as obstacle_c
 from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
 from dexrepro.chapters.chapter7.style_separation import experiment as style_separation
 from dexrepro.chapters.chapter7.unseen_conditions import experiment as unseen_conditions
-from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import Measured
 from dexrepro.control.motion import Motion
 from dexrepro.control.time_delay_impedance import ConstantImpedance, TimeDelayImpedance
@@ -26,27 +26,18 @@ from dexrepro.measures import rms_distance
 from dexrepro.physics.model import RigidBodyModel
 from dexrepro.robots.pen_arm import pen_arm, pen_arm_tip
 
-
-@pytest.fixture(scope="module")
-def cases() -> Any:
-    composed = compose_chapter("7")
-
-    def find(experiment: str, case: str, **changes: Any) -> Config:
-        values = experiment_cases(composed, experiment)[case]
-        return live({**values, "seed": 0, "perturbation": 0.0, "case": case, **changes})
-
-    return find
+case = partial(cases.case, "7")
 
 
 @pytest.fixture(scope="module")
-def learned(cases: Any) -> skills.Skills:
-    config = cases("fuzzy_generalisation", "main")
+def learned() -> skills.Skills:
+    config = case("fuzzy_generalisation", "main")
     return skills.Skills(config, *skills.demonstrate(config))
 
 
-def test_printed_kinematics_end_where_the_damper_balances_the_spring(cases: Any) -> None:
+def test_printed_kinematics_end_where_the_damper_balances_the_spring() -> None:
     """T X' = V' drives X to (K G + D T X0) / (K + D T) instead of G when nothing forces it."""
-    config = cases("fuzzy_generalisation", "main")
+    config = case("fuzzy_generalisation", "main")
     primitive = skills.Primitive(config, 8)
     start, goal = np.array([1.0, 0.0, 0.0]), np.array([9.0, 4.0, 0.0])
     still = np.zeros((len(primitive.time), 3))
@@ -56,16 +47,16 @@ def test_printed_kinematics_end_where_the_damper_balances_the_spring(cases: Any)
     assert primitive.rollout(still, start, goal)[-1] == pytest.approx(goal, abs=1e-2)
 
 
-def test_target_and_rollout_return_a_smooth_path(cases: Any) -> None:
-    config = cases("fuzzy_generalisation", "main")
+def test_target_and_rollout_return_a_smooth_path() -> None:
+    config = case("fuzzy_generalisation", "main")
     primitive, task = skills.Primitive(config, 8), skills.reach(config)
     path = skills.person(config).ordinary(task)
     again = primitive.rollout(primitive.target(path, task.ends[1], 8.0), *task.ends)
     assert rms_distance(again, path) < 0.02
 
 
-def test_a_task_that_is_turned_is_performed_turned(cases: Any, learned: skills.Skills) -> None:
-    config = cases("fuzzy_generalisation", "main")
+def test_a_task_that_is_turned_is_performed_turned(learned: skills.Skills) -> None:
+    config = case("fuzzy_generalisation", "main")
     angle = 0.6
     turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1.0]])
     tasks = []
@@ -77,8 +68,8 @@ def test_a_task_that_is_turned_is_performed_turned(cases: Any, learned: skills.S
     assert tasks[0].clearance(straight) == pytest.approx(skills.NewTask(config, learned).clearance(straight))
 
 
-def test_the_old_task_is_its_own_generalisation(cases: Any, learned: skills.Skills) -> None:
-    config = cases("fuzzy_generalisation", "main")
+def test_the_old_task_is_its_own_generalisation(learned: skills.Skills) -> None:
+    config = case("fuzzy_generalisation", "main")
     old = Config({**config.task, "start": config.scene.start, "goal": config.scene.goal, "scope": "same"})
     task = skills.NewTask(Config({**config, "task": old}), learned)
     assert task.perform() == pytest.approx(learned.perform(), abs=1e-9)
@@ -90,8 +81,8 @@ def test_board_and_robot_are_inverse() -> None:
     assert desk.to_board(desk.to_robot(points)) == pytest.approx(points)
 
 
-def test_the_reference_rests_before_and_after_and_its_derivatives_fit(cases: Any) -> None:
-    config = cases("impedance_tracking", "muscle")
+def test_the_reference_rests_before_and_after_and_its_derivatives_fit() -> None:
+    config = case("impedance_tracking", "muscle")
     _, reference = desk.planned(config)
     assert abs(reference.velocity[:500]).max() < 1e-9
     assert abs(reference.velocity[-500:]).max() < 1e-9
@@ -100,8 +91,8 @@ def test_the_reference_rests_before_and_after_and_its_derivatives_fit(cases: Any
     assert reference.tip == pytest.approx(pen_arm_tip(reference.position))
 
 
-def test_nearest_and_plane_return_what_they_know(cases: Any, learned: skills.Skills) -> None:
-    config = cases("unseen_conditions", "main")
+def test_nearest_and_plane_return_what_they_know(learned: skills.Skills) -> None:
+    config = case("unseen_conditions", "main")
     known = skills.conditions(config)
     for index in (0, 7):
         x = known[index].inputs
@@ -112,12 +103,12 @@ def test_nearest_and_plane_return_what_they_know(cases: Any, learned: skills.Ski
     assert found == pytest.approx(15.0)
 
 
-def test_learning_experiments_measure_what_they_simulate(cases: Any) -> None:
-    for module, case in ((style_separation, "one_obstacle"), (fuzzy_generalisation, "main")):
-        config = cases(module.__name__.split(".")[-2], case)
+def test_learning_experiments_measure_what_they_simulate() -> None:
+    for module, name in ((style_separation, "one_obstacle"), (fuzzy_generalisation, "main")):
+        config = case(module.__name__.split(".")[-2], name)
         metrics = module.measure(module.simulate(config, None), config)
         assert all(np.isfinite(value) for value in metrics.values())
-    config = cases("reactive_learning", "frozen", draws=2)
+    config = case("reactive_learning", "frozen", draws=2)
     metrics = reactive_learning.measure(reactive_learning.simulate(config, None), config)
     assert metrics["rmse5"] < metrics["rmse1"] < metrics["no_reaction"]
 
@@ -128,18 +119,18 @@ def shortened(config: Config, **changes: Any) -> Config:
     return Config({**config, "demonstration": demonstration, "hold": 0.2, "pick": 0.1, "release": 0.9, **changes})
 
 
-def test_the_arm_follows_the_plan_and_chatters_above_the_predicted_gain(cases: Any) -> None:
+def test_the_arm_follows_the_plan_and_chatters_above_the_predicted_gain() -> None:
     metrics = {}
-    for case in ("gain10", "gain45"):
-        config = shortened(cases("impedance_stability", case))
-        metrics[case] = impedance_stability.measure(impedance_stability.simulate(config, None), config)
+    for name in ("gain10", "gain45"):
+        config = shortened(case("impedance_stability", name))
+        metrics[name] = impedance_stability.measure(impedance_stability.simulate(config, None), config)
     assert metrics["gain10"]["rms_error"] < 0.2
     assert metrics["gain10"]["predicted_radius"] < 1 < metrics["gain45"]["predicted_radius"]
     assert metrics["gain45"]["torque_travel"] > 10 * metrics["gain10"]["torque_travel"]
 
 
-def test_a_push_moves_the_arm_by_its_compliance_without_estimation(cases: Any) -> None:
-    config = shortened(cases("obstacle_contact", "high_plain"), rise=-3.0)
+def test_a_push_moves_the_arm_by_its_compliance_without_estimation() -> None:
+    config = shortened(case("obstacle_contact", "high_plain"), rise=-3.0)
     config["hold"] = 0.5
     config["pushes"] = Config({"before": [0.1, 0.2], "behind": [0.2, 0.3], "rest": [1.15, 1.7]})
     recording = obstacle_contact.simulate(config, None)
@@ -150,8 +141,8 @@ def test_a_push_moves_the_arm_by_its_compliance_without_estimation(cases: Any) -
     assert np.isnan(obstacle_contact.predicted_deviation(recording, config))
 
 
-def test_a_task_is_taken_as_printed_by_words_that_there_are(cases: Any, learned: skills.Skills) -> None:
-    config = cases("fuzzy_generalisation", "main")
+def test_a_task_is_taken_as_printed_by_words_that_there_are(learned: skills.Skills) -> None:
+    config = case("fuzzy_generalisation", "main")
     config["task"] = Config({**config.task, "printed": ["kinematic"]})
     with pytest.raises(ValueError, match="must be a list of scaling, kinematics"):
         skills.NewTask(config, learned)
@@ -181,9 +172,9 @@ def test_integral_action_holds_the_last_load_and_waits_while_the_torque_is_at_it
 
 def test_the_relay_of_7_40_is_run_with_the_corrected_signs() -> None:
     (erratum,) = (e for e in chapters.load("7").errata if e.id == "E7.20")
-    case = experiment_cases(compose_chapter("7", shlex.split(erratum.switch)), "impedance_tracking")["as_printed"]
-    assert case["law"]["printed"] == []
-    assert case["law"]["impedance"]["switching_gain"] == 100.0
+    values = cases.resolved("7", "impedance_tracking", "as_printed", *shlex.split(erratum.switch))
+    assert values["law"]["printed"] == []
+    assert values["law"]["impedance"]["switching_gain"] == 100.0
 
 
 def test_what_the_printed_law_fails_at_the_corrected_one_does_from_the_same_start() -> None:

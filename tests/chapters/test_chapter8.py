@@ -2,12 +2,14 @@
 
 import copy
 import importlib
+from functools import partial
 
+import cases
 import numpy as np
 import pytest
+from cases import rng
 
 from dexrepro import baselines, chapters
-from dexrepro.case import generator, live
 from dexrepro.chapters.chapter8 import task
 from dexrepro.chapters.chapter8.circle_tracking import experiment as circle_tracking
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
@@ -20,14 +22,13 @@ from dexrepro.control.interaction_optimum import InteractionCost, InteractionMod
 from dexrepro.experiment import Config
 from dexrepro.physics.loop import Diverged
 
-CASES = {name: experiment_cases(compose_chapter("8"), name) for name in ("circle_tracking", "unknown_object", "sponge")}
+case, resolved = partial(cases.case, "8"), partial(cases.resolved, "8")
 
 
-def run(experiment, case, **changes):
+def run(experiment, name, **changes):
     module = importlib.import_module(f"dexrepro.chapters.chapter8.{experiment}.experiment")
-    values = {**CASES[experiment][case], **changes, "perturbation": 0.0, "seed": 0, "case": case}
-    config = live(values)
-    return module.simulate(config, lambda purpose: generator(0, experiment, purpose)), config
+    config = case(experiment, name, **changes)
+    return module.simulate(config, rng(experiment)), config
 
 
 def test_the_arm_starts_where_the_book_says():
@@ -45,7 +46,7 @@ def test_the_start_transient_ends_inside_the_bounds(case):
 
 def test_the_forces_in_y_that_the_erratum_on_the_pose_names():
     """E8.01: what the law holds with rate 1, the load at the start elbow-down and the largest elbow-up [N]."""
-    config = live({**CASES["circle_tracking"]["down_unit"], "perturbation": 0.0})
+    config = case("circle_tracking", "down_unit")
     law, arm = config.barrier.keywords, config.arm
     reach = max(barrier_terms(error, config.bound[1])[0] for error in np.linspace(1e-4, config.bound[1], 1000))
     held = law["velocity_gain"][1] * law["position_gain"][1] * reach + law["robust_gain"][1]
@@ -73,7 +74,7 @@ def test_elbow_down_with_rate_one_violates_a_bound_and_the_run_says_so():
 
 @pytest.mark.parametrize("case", ["tuned_broad", "tuned_fuzzy", "tuned_hinf"])
 def test_a_search_ends_at_what_the_loop_bears_and_not_at_the_edge_of_its_grid(case):
-    values = copy.deepcopy(CASES["circle_tracking"][case])
+    values = copy.deepcopy(resolved("circle_tracking", case))
     assert run("circle_tracking", case, duration=0.1)[0].status == "finished"
     if case == "tuned_hinf":  # twice the integral share
         values["hinfinity"]["gain"]["weights"][0] *= 4
@@ -87,7 +88,7 @@ def test_a_search_ends_at_what_the_loop_bears_and_not_at_the_edge_of_its_grid(ca
 
 
 def test_matching_gives_the_fixed_network_the_adaptation_gain_of_the_broad_one():
-    config = live({**CASES["circle_tracking"]["fuzzy_matched"], "perturbation": 0.0})
+    config = case("circle_tracking", "fuzzy_matched")
     before = float(config.networks[2].gain)
     factor = circle_tracking.match_rates(config)
     assert float(config.networks[2].gain) == pytest.approx(factor * before)
@@ -100,11 +101,11 @@ def test_the_matched_gain_is_the_broad_networks_over_the_part_whose_errors_are_c
     broad = "friction_broad" if case.startswith("friction") else "broad"
     found, wanted = (stored[f"circle_tracking.{name}.early_gain"]["value"] for name in (case, broad))
     assert found == pytest.approx(wanted, rel=0.02)  # under friction the arm leaves the path a little
-    assert CASES["circle_tracking"][case]["early"] == CASES["circle_tracking"][broad]["early"]
+    assert resolved("circle_tracking", case)["early"] == resolved("circle_tracking", broad)["early"]
 
 
 def test_a_constant_node_makes_of_each_network_an_integral_of_the_error():
-    config = live({**CASES["circle_tracking"]["node"], "perturbation": 0.0})
+    config = case("circle_tracking", "node")
     gravity = config.networks[2]
     for place in ([0.1, 0.2], [-0.3, 0.1]):
         gravity.output(np.array(place), grow=True)
@@ -124,8 +125,8 @@ def test_a_regulator_may_start_from_the_gain_of_the_others():
 @pytest.mark.parametrize("motion", ["circle", "approach"])
 def test_velocity_and_acceleration_belong_to_the_path(motion):
     path = {
-        "circle": lambda: task.circle(live(CASES["circle_tracking"]["broad"]["path"])),
-        "approach": lambda: sponge.approach(live(CASES["sponge"]["learned"]["path"])),
+        "circle": lambda: task.circle(case("circle_tracking", "broad").path),
+        "approach": lambda: sponge.approach(case("sponge", "learned").path),
     }[motion]()
     before, here, after = (path(1.3 + shift) for shift in (-1e-5, 0.0, 1e-5))
     assert (after.position - before.position) / 2e-5 == pytest.approx(here.velocity, abs=1e-8)

@@ -3,9 +3,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from cases import case
 
-from dexrepro import config
-from dexrepro.case import live
 from dexrepro.chapters.chapter3 import reach
 from dexrepro.chapters.chapter3.grasp_through_opening import experiment as joined
 from dexrepro.chapters.chapter3.grasp_through_opening.figures import FILM
@@ -16,9 +15,7 @@ RED = (0.9, 0.1, 0.1, 1.0)
 
 @pytest.fixture(scope="module")
 def settings():
-    composed = config.compose_chapter("3")
-    values = config.experiment_cases(composed, "grasp_through_opening")["random"]
-    return live({**values, "perturbation": 0.0, "seed": 0, "case": "random"})
+    return case("3", "grasp_through_opening", "random")
 
 
 def picture(settings, items):

@@ -7,21 +7,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import case, rng
 
-from dexrepro.case import generator, live
+from dexrepro.case import generator
 from dexrepro.chapters.chapter5 import crossing, letters
 from dexrepro.chapters.chapter5.obstacle_crossing import experiment as obstacle_crossing
 from dexrepro.chapters.chapter6.planar_skill import experiment as planar_skill
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
-from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.errors import InputError
 
 
-def configured(chapter: str, experiment: str, case: str, *overrides: str) -> Any:
-    given = [f"{experiment}.{text}" for text in overrides]
-    values = experiment_cases(compose_chapter(chapter, given), experiment)[case]
-    return live({**values, "perturbation": 0.0, "seed": 0})
+def configured(chapter: str, experiment: str, name: str, *overrides: str) -> Any:
+    return case(chapter, experiment, name, *(f"{experiment}.{text}" for text in overrides))
 
 
 @pytest.fixture(autouse=True)
@@ -57,7 +55,7 @@ def test_only_the_crossings_with_files_are_recorded() -> None:
 
 def test_the_printed_amplitude_is_not_evaluated_where_it_is_not_defined() -> None:
     config = configured("5", "obstacle_crossing", "printed_amplitude", "demonstrations={1: over.csv}")
-    recording = obstacle_crossing.simulate(config, lambda purpose: generator(0, "obstacle_crossing", purpose))
+    recording = obstacle_crossing.simulate(config, rng("obstacle_crossing"))
     assert "not defined" in recording.status
     assert obstacle_crossing.measure(recording, config) == {}
 
@@ -86,8 +84,7 @@ def test_a_reach_on_another_desk_is_learned_after_following_the_refusal(goal: tu
     overrides = ["reaching_demonstrations.demonstrations=desk.csv"]
 
     def attempt() -> Any:
-        values = experiment_cases(compose_chapter("7", overrides), "reaching_demonstrations")["corrected"]
-        return skills.demonstrate(live({**values, "perturbation": 0.0, "seed": 0}))
+        return skills.demonstrate(case("7", "reaching_demonstrations", "corrected", *overrides))
 
     for _ in range(2):
         with pytest.raises(InputError, match=r"set (shared\.scene\.start=.*)") as refused:
@@ -126,7 +123,7 @@ def write_reach(name: str, aside: float, goal: tuple[float, float] = (20.0, 9.0)
 def test_recorded_reactions_are_learned_in_the_place_of_the_synthetic_ones() -> None:
     write_reach("left.csv", 6.0)
     config = configured("7", "reactive_learning", "frozen", "reactions={close_low_left: left.csv}", "draws=1")
-    recording = reactive_learning.simulate(config, lambda purpose: generator(0, "reactive_learning", purpose))
+    recording = reactive_learning.simulate(config, rng("reactive_learning"))
     demonstrated = recording["demonstrations"].reshape(len(recording.time), 3, -1, 3)
     assert np.ptp(demonstrated[:, 0], axis=1).max() == pytest.approx(0, abs=1e-9)  # one file takes every turn
     assert np.ptp(demonstrated[:, 1], axis=1).max() > 0.01
@@ -165,7 +162,7 @@ def write_drawing(turn: float = 0.0) -> None:
 def planar(*overrides: str) -> tuple[Any, Any]:
     own = ["demonstrations.files=drawing.csv", "map.block_file=block.csv", "map.obstacle_files=wall.csv", *overrides]
     config = configured("6", "planar_skill", "book", *own)
-    return config, planar_skill.simulate(config, lambda purpose: generator(0, "planar_skill", purpose))
+    return config, planar_skill.simulate(config, rng("planar_skill"))
 
 
 @pytest.mark.parametrize("turn", [0.0, 1.2, 3.0])

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import case, rng
 
 from dexrepro import chapters
-from dexrepro.case import generator, live
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter
 from dexrepro.control.contract import Command, Measured, check, report
 from dexrepro.control.motion import Motion, rest
 from dexrepro.errors import InputError
@@ -137,11 +137,10 @@ def brief(monkeypatch: pytest.MonkeyPatch) -> None:
 )
 @pytest.mark.usefixtures("brief")
 def test_a_law_of_its_kind_joins_the_comparison(number: str, name: str, law: type) -> None:
-    case = ", ".join((f"law: {{_target_: test_own_law.{law.__name__}}}", *BESIDE.get(name, ())))
-    values = experiment_cases(compose_chapter(number, (f"+{name}.cases.mine={{{case}}}",)), name)["mine"]
-    config = live({**values, "perturbation": 0.0, "seed": 1, "case": "mine"})
+    mine = ", ".join((f"law: {{_target_: test_own_law.{law.__name__}}}", *BESIDE.get(name, ())))
+    config = case(number, name, "mine", f"+{name}.cases.mine={{{mine}}}", seed=1)
     experiment = chapters.load(number).experiment(name)
-    recording = experiment.simulation.simulate(config, lambda purpose: generator(1, name, purpose))
+    recording = experiment.simulation.simulate(config, rng(name, seed=1))
     assert Told.calls > 0
     assert Told.resets > 0
     assert np.isfinite(np.concatenate([np.ravel(part) for part in Told.measured[:4]])).all()
@@ -156,8 +155,7 @@ def test_a_law_of_each_kind_drives_the_own_scene(kind: str) -> None:
     leader = "scene.leader={line: {start: [0.5, 0.1, 0], end: [0.55, 0.15, 0], period: 4}}"
     law = f"scene.law={{_target_: test_own_law.{LAWS[kind].__name__}}}"
     given = (arm, leader, law, "scene.start=[-0.5, 1.0]", "scene.offset=[-0.1, 0, 0]")
-    (values,) = experiment_cases(compose_chapter("own", given), "scene").values()
-    config = live({**values, "perturbation": 0.0})
+    config = case("own", "scene", "default", *given)
     recording = chapters.load("own").experiment("scene").simulation.simulate(config, None)
     assert Told.calls == 6
     assert Told.resets > 0
@@ -225,22 +223,21 @@ def test_a_law_that_is_not_there_or_cannot_be_called_gets_one_sentence(
 
 
 def test_a_law_that_forgot_its_kind_hears_that_it_was_taken_for_a_plain_one() -> None:
-    given = ("+holding_comparison.cases.mine={law: {_target_: test_own_law.Forgetful}}",)
-    values = experiment_cases(compose_chapter("2", given), "holding_comparison")["mine"]
-    config = live({**values, "perturbation": 0.0, "seed": 1, "case": "mine"})
+    mine = "+holding_comparison.cases.mine={law: {_target_: test_own_law.Forgetful}}"
+    config = case("2", "holding_comparison", "mine", mine, seed=1)
     with pytest.raises(
         LawFailed, match=r"the law Forgetful \(of no kind, so told position and force\) of arm 'follower'"
     ):
-        chapters.load("2").experiment("holding_comparison").simulation.simulate(config, lambda _: generator(1, "", ""))
+        chapters.load("2").experiment("holding_comparison").simulation.simulate(config, rng("holding_comparison"))
 
 
 def test_the_own_scene_takes_laws_of_every_kind_so_that_each_must_declare_its_own() -> None:
     arm = "scene.arm={_target_: dexrepro.robots.planar.planar, lengths: [0.4, 0.3], masses: [1.0, 0.8]}"
     leader = "scene.leader={line: {start: [0.5, 0.1, 0], end: [0.55, 0.15, 0], period: 4}}"
     given = (arm, leader, "scene.law={_target_: test_own_law.PlainHolding}", "scene.offset=[-0.1, 0, 0]")
-    (values,) = experiment_cases(compose_chapter("own", given), "scene").values()
+    config = case("own", "scene", "default", *given)
     with pytest.raises(InputError, match="scene law PlainHolding must declare its kind, one of joint, end_point, hold"):
-        chapters.load("own").experiment("scene").simulation.simulate(live({**values, "perturbation": 0.0}), None)
+        chapters.load("own").experiment("scene").simulation.simulate(config, None)
 
 
 class Nameless(Joint):

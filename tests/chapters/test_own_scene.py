@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import case, rng
 
-from dexrepro.case import generator, live
 from dexrepro.chapters.own.paths import leader_path
 from dexrepro.chapters.own.scene import experiment as scene
 from dexrepro.cli import main
 from dexrepro.commands.run import run_overrides
-from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import Command
 from dexrepro.errors import InputError
 from dexrepro.experiment import Recording
@@ -50,8 +49,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def configured(*overrides: str, arm: str = TINY, leader: str = LINE) -> Any:
     given = (f"scene.arm={arm}", f"scene.leader={leader}", "scene.start=[-0.5,1.0]", "scene.duration=0.5", *overrides)
-    (values,) = experiment_cases(compose_chapter("own", given), "scene").values()
-    return live({**values, "perturbation": 0.0})
+    return case("own", "scene", "default", *given)
 
 
 def run(law: str, *overrides: str, **parts: str) -> tuple[Recording, Any]:
@@ -309,7 +307,7 @@ def test_a_noisy_sensor_is_noisy_and_the_same_in_every_run() -> None:
     leader = "{line: {start: [0.75, 0.1, 0], end: [0.75, 0.1, 0], period: 4}}"
     law = "scene.law={_target_: dexrepro.control.joint_pd.JointPD, stiffness: 300, damping: 20}"
     config = configured(law, *spring, "scene.sensor={velocity_noise: 0.05, force_delay: 0.01}", leader=leader)
-    first, again = (scene.simulate(config, lambda purpose: generator(0, "scene", purpose)) for _ in range(2))
+    first, again = (scene.simulate(config, rng("scene")) for _ in range(2))
     assert np.array_equal(first["arm.torque"], again["arm.torque"])
     exact, _ = run(HOLDS, *spring, leader=leader)
     assert np.std(np.diff(first["arm.torque"][50:], axis=0)) > 5 * np.std(np.diff(exact["arm.torque"][50:], axis=0))
@@ -345,7 +343,7 @@ def test_a_noisy_sensor_is_noisy_and_the_same_in_every_run() -> None:
 def test_what_is_wrong_in_a_block_names_key_value_and_what_is_allowed(word: str, sentence: str) -> None:
     law = "scene.law={_target_: dexrepro.control.joint_pd.JointPD, stiffness: 300, damping: 20}"
     with pytest.raises(InputError, match=sentence):
-        scene.simulate(configured(law, f"scene.{word}"), lambda purpose: generator(0, "scene", purpose))
+        scene.simulate(configured(law, f"scene.{word}"), rng("scene"))
 
 
 def test_a_push_after_the_end_is_said() -> None:
@@ -354,4 +352,4 @@ def test_a_push_after_the_end_is_said() -> None:
     with pytest.warns(
         UserWarning, match=r"scene.pushes.0.start = 9 comes after the end at 0.1 s: there is no such push"
     ):
-        scene.simulate(configured(law, push, "scene.duration=0.1"), lambda purpose: generator(0, "scene", purpose))
+        scene.simulate(configured(law, push, "scene.duration=0.1"), rng("scene"))

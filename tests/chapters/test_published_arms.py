@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import case, rng
 
-from dexrepro.case import generator, live
 from dexrepro.chapters.chapter2.balloon_static import experiment as balloon
 from dexrepro.chapters.own.scene import experiment as scene
-from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.errors import InputError
 
 DATA = Path(pytest.importorskip("pybullet_data").getDataPath())
@@ -25,20 +24,15 @@ ARMS = [
 ]
 
 
-def configured(chapter: str, experiment: str, case: str, *overrides: str) -> Any:
-    values = experiment_cases(compose_chapter(chapter, overrides), experiment)[case]
-    return live({**values, "perturbation": 0.0, "seed": 0})
-
-
 @pytest.mark.parametrize(("file", "end"), ARMS)
 def test_an_arm_of_a_makers_file_follows_a_leader(file: Path, end: str) -> None:
-    config = configured(
+    config = case(
         "own", "scene", "default",
         f"scene.arm={{_target_: dexrepro.robots.urdf.from_urdf, path: '{file}', end: {end}}}",
         "scene.leader={line: {start: [0.45, 0.1, 0.4], end: [0.5, 0.15, 0.4], period: 2}}", "scene.duration=0.5",
         'scene.law={_target_: dexrepro.control.computed_torque.ComputedTorque, model: "${scene.model}", frequency: 30}',
     )  # fmt: skip
-    recording = scene.simulate(config, lambda purpose: generator(0, "scene", purpose))
+    recording = scene.simulate(config, rng("scene"))
     assert recording.status == "finished"
     assert scene.measure(recording, config)["rmse"] < 1e-3
 
@@ -48,8 +42,8 @@ def test_it_holds_the_balloon_in_chapter_2(file: Path, end: str) -> None:
     def run(base: str) -> Any:
         arm = f"{{_target_: dexrepro.robots.urdf.from_urdf, path: '{file}', end: {end}, base: {base}}}"
         words = (f"shared.balloon.follower_arm={arm}", "balloon_static.duration=1")
-        config = configured("2", "balloon_static", "off_80", *words)
-        return balloon.simulate(config, lambda purpose: generator(0, "balloon_static", purpose))
+        config = case("2", "balloon_static", "off_80", *words)
+        return balloon.simulate(config, rng("balloon_static"))
 
     recording = run("[0.35, 0.8, 0.0]")
     assert recording.status == "finished"
