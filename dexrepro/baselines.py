@@ -20,9 +20,8 @@ from typing import Any
 
 from dexrepro import chapters
 from dexrepro.checks import is_number
-from dexrepro.config import in_quotes
+from dexrepro.config import selecting
 from dexrepro.errors import InputError
-from dexrepro.physics.engine import REFERENCE
 from dexrepro.plan import Plan, outdated, plan_chapter, select
 from dexrepro.pool import BLAS_THREADS
 from dexrepro.report.damage import check_result, read_table
@@ -198,8 +197,7 @@ def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> Chap
 
 def check_cases(chapter: str, results: Path, only: Sequence[str], case: str) -> ChapterReport:
     """The same for the metrics of the cases that a word ``case=...`` chooses, from a run of them or else of all."""
-    words = [f"results={in_quotes(str(results))}", case, *([f"only=[{','.join(only)}]"] if only else [])]
-    plans, _ = plan_chapter(chapter, words, write=False)
+    plans, _ = plan_chapter(chapter, [*selecting(results, only), case], write=False)
     report = ChapterReport(chapter)
     for plan in plans:
         places = plan.folder, results / f"chapter{chapter}" / plan.experiment
@@ -305,58 +303,70 @@ def update_chapter(
 
     Returns what changed, a line each. Raises InputError where a verdict changed that is not in ``accept``.
     """
-    overrides = [f"results='{results}'", *([f"only=[{','.join(only)}]"] if only else [])]
-    plans, _ = plan_chapter(chapter, overrides)
-    foreign = [plan.experiment for plan in plans if REFERENCE != plan.engine in plan.versions]
+    plans, *perturbed = _plans_of_update(chapter, selecting(results, only), results)
+    for group in (plans, *perturbed):
+        if failed := run_plans(group, workers=workers, force=False).failed:
+            raise InputError(failed)
+    elsewhere = _run_elsewhere(chapter, plans, results, workers)
+    old = {plan.experiment: Baseline.of(chapter, plan.experiment) for plan in plans}
+    new = {
+        plan.experiment: _renewed(old[plan.experiment], plan, moved, elsewhere.get(plan.experiment, {}))
+        for plan, *moved in zip(plans, *perturbed, strict=True)
+    }
+    turned = _turned_verdicts(old, new, accept)
+    files = {baseline_file(chapter, name): baseline for name, baseline in new.items()}
+    for path, baseline in files.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_json(path, asdict(baseline))
+    sensitive = [line for baseline in new.values() for line in _sensitive(baseline.metrics)]
+    return [*turned, *sensitive, *(f"wrote {path}" for path in files)]
+
+
+def _plans_of_update(chapter: str, overrides: Sequence[str], results: Path) -> list[list[Plan]]:
+    """As shipped, and with each of the PERTURBATIONS. Raises InputError without the engine of the baselines."""
+    plans, *perturbed = (plan_chapter(chapter, overrides, perturbation=size)[0] for size in (0.0, *PERTURBATIONS))
+    foreign = [plan.experiment for plan in plans if plan.off_reference]
     if foreign and not chapters.is_added(chapter):
         raise InputError(
             f"the baselines of {', '.join(foreign)} are PyBullet's, which is not installed here: --update would "
             "replace them by numbers of MuJoCo's"
         )
-    moved = [plan_chapter(chapter, overrides, perturbation=size)[0] for size in PERTURBATIONS]
-    for number, group in enumerate(moved):
+    for number, group in enumerate(perturbed):
         for plan in group:
             plan.folder = results / ".cache" / f"perturbed{number}" / plan.experiment
-    for which in (plans, *moved):
-        outcome = run_plans(which, workers=workers, force=False)
-        if outcome.failures:
-            raise InputError("; ".join(f"{name}: {text}" for name, text in outcome.failures.items()))
-    elsewhere = _run_elsewhere(chapter, plans, results, workers)
-    old = {plan.experiment: Baseline.of(chapter, plan.experiment) for plan in plans}
-    new: dict[str, Baseline] = {}
-    for plan, *perturbed in zip(plans, *moved, strict=True):
-        metrics, *disturbed = (read_json(p.folder / "metrics.json") for p in (plan, *perturbed))
-        stored, other = old[plan.experiment].metrics, elsewhere.get(plan.experiment, {})
-        entries = {
-            name: _entry(
-                value,
-                [moved.get(name) for moved in disturbed],
-                {text: found.get(name) for text, found in other.items()},
-                stored.get(name),
-            )
-            for name, value in metrics.items()
-        }
-        verdicts = {claim["id"]: claim["verdict"] for claim in read_json(plan.folder / "claims.json")}
-        free = old[plan.experiment].free
-        new[plan.experiment] = Baseline(entries, verdicts, tables_of(plan.folder / "tables"), free)
-    changed = {
-        key: (before, new[name].claims[key])
-        for name, stored_baseline in old.items()
-        for key, before in stored_baseline.claims.items()
-        if new[name].claims.get(key, before) != before
+    return [plans, *perturbed]
+
+
+def _renewed(
+    old: Baseline, plan: Plan, perturbed: Sequence[Plan], elsewhere: Mapping[str, Mapping[str, float | None]]
+) -> Baseline:
+    """The baseline that an experiment's results make of the old one; elsewhere: metrics by the arithmetic."""
+    metrics, *disturbed = (read_json(p.folder / "metrics.json") for p in (plan, *perturbed))
+    entries = {
+        name: _entry(
+            value,
+            [moved.get(name) for moved in disturbed],
+            {text: found.get(name) for text, found in elsewhere.items()},
+            old.metrics.get(name),
+        )
+        for name, value in metrics.items()
     }
-    refused = [key for key in changed if key not in accept]
-    if refused:
-        texts = ", ".join(f"{key} ({changed[key][0]} -> {changed[key][1]})" for key in refused)
+    verdicts = {claim["id"]: claim["verdict"] for claim in read_json(plan.folder / "claims.json")}
+    return Baseline(entries, verdicts, tables_of(plan.folder / "tables"), old.free)
+
+
+def _turned_verdicts(old: Mapping[str, Baseline], new: Mapping[str, Baseline], accept: Sequence[str]) -> list[str]:
+    """A line for each verdict that changed. Raises InputError where one of them is not accepted."""
+    turned = {
+        key: f"{before} -> {after}"
+        for name, baseline in old.items()
+        for key, before in baseline.claims.items()
+        if (after := new[name].claims.get(key, before)) != before
+    }
+    if refused := [key for key in turned if key not in accept]:
+        texts = ", ".join(f"{key} ({turned[key]})" for key in refused)
         raise InputError(f"verdicts changed: {texts}; review them and repeat with --accept {' '.join(refused)}")
-    written = []
-    for name, baseline in new.items():
-        path = baseline_file(chapter, name)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_json(path, asdict(baseline))
-        written.append(f"wrote {path}")
-    lines = [f"{key}: {before} -> {after}" for key, (before, after) in changed.items()]
-    return [*lines, *(line for baseline in new.values() for line in _sensitive(baseline.metrics)), *written]
+    return [f"{key}: {text}" for key, text in turned.items()]
 
 
 def arithmetics() -> tuple[dict[str, str], ...]:

@@ -272,6 +272,11 @@ def in_quotes(text: str) -> str:
     return "'" + text.replace("'", "\\'") + ("\\'" if text.endswith("\\") else "'")
 
 
+def selecting(results: Path, only: Sequence[str] = ()) -> list[str]:
+    """Overrides that name the folder of the results and the experiments (none: all)."""
+    return [f"results={in_quotes(str(results))}", *([f"only=[{','.join(only)}]"] if only else [])]
+
+
 def understood(overrides: Sequence[str]) -> list[Override]:
     """Overrides as Hydra reads them. Raises InputError for a word that is none of them or names no key."""
     found = []

@@ -17,6 +17,7 @@ import numpy as np
 from dexrepro import chapters
 from dexrepro.baselines import Baseline, agrees, baseline_dir
 from dexrepro.claims import NOT_EVALUATED
+from dexrepro.config import selecting
 from dexrepro.errors import InputError
 from dexrepro.plan import Plan, plan_chapter, uses_engine
 from dexrepro.progress import Silent
@@ -66,7 +67,7 @@ def run(
     chapter: str, only: Sequence[str], results: Path, workers: int | None, progress: Silent | None = None
 ) -> list[Comparison]:
     """Run what simulates arms under the other engine and compare. Raises InputError where a case fails."""
-    words = [f"results='{results}'", f"engine={OTHER}", *([f"only=[{','.join(only)}]"] if only else [])]
+    words = [*selecting(results, only), f"engine={OTHER}"]
     loaded = chapters.load(chapter)
     plans = [plan for plan in plan_chapter(chapter, words)[0] if uses_engine(loaded.experiment(plan.experiment))]
     outcome = run_plans(plans, workers=workers, force=False, progress=progress)

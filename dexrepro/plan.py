@@ -79,6 +79,11 @@ class Plan:
         return {name: version(name) for name in (*NUMERICAL, *engine, *experiment.requires)}
 
     @property
+    def off_reference(self) -> bool:
+        """Whether it simulates arms by another engine than that of the baselines."""
+        return REFERENCE != self.engine in self.versions
+
+    @property
     def contents(self) -> dict[str, str]:
         """What each case is made of."""
         return {job.case: job.content for job in self.jobs}

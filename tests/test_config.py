@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
 from dexrepro import chapters
-from dexrepro.config import SETTINGS, _names, compose_chapter, experiment_cases, inherited, resolved_block
+from dexrepro.config import SETTINGS, _names, compose_chapter, experiment_cases, inherited, resolved_block, selecting
 from dexrepro.errors import InputError
 from dexrepro.plan import plan_chapter
 from dexrepro.provenance import Provenance, commented_leaves, leaves_with_comments, parse_provenance
@@ -219,3 +220,8 @@ def test_an_unknown_word_or_a_wrong_length_is_refused(chapter: str, override: st
 def test_what_a_word_cannot_set_is_said_by_its_whole_key(words: list[str], sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
         experiment_cases(compose_chapter("own", words), "scene")
+
+
+def test_results_may_be_in_a_folder_of_any_name() -> None:
+    composed = compose_chapter("2", selecting(Path("it's [mine], too"), ["holding_line"]))
+    assert (composed["results"], composed["only"]) == ("it's [mine], too", ["holding_line"])

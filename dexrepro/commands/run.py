@@ -113,7 +113,6 @@ def _differs(name: str, differs: Sequence[str]) -> list[str]:
 
 def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
     from dexrepro.config import compose_chapter
-    from dexrepro.physics.engine import REFERENCE
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
     from dexrepro.runner import run_plans, summary_rows
@@ -131,7 +130,7 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
         chapter_plans, chapter_skipped = plan_chapter(number, own, composed=settings)
         plans += chapter_plans
         skipped |= chapter_skipped
-    if settings.get("engine") is None and any(REFERENCE != plan.engine in plan.versions for plan in plans):
+    if settings.get("engine") is None and any(plan.off_reference for plan in plans):
         warn(WITHOUT_PYBULLET)
     quiet = bool(settings.get("quiet"))
     progress = Silent() if quiet else Bar(out) if out.is_terminal else Lines(out)
