@@ -49,7 +49,7 @@ def selected(words: Iterable[str], command: str) -> Selection:
     numbers, _ = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
     if chapters.OWN in numbers and command in ("check", "crosscheck", "study"):
         raise InputError(f"chapter = {chapters.OWN} is not allowed for {command}: scenes of your own have no claims")
-    only = [name.strip("'\" ") for name in values.get("only", "").strip("[]").split(",") if name.strip("'\" ")]
+    only = [*filter(None, listed(values.get("only", "")))]
     if only or "figure" in values:
         figure = values.get("figure", "").strip("'\"") or None
         only = [experiment.name for number in numbers for experiment in select(number, only or None, figure)]
@@ -60,6 +60,11 @@ def selected(words: Iterable[str], command: str) -> Selection:
         positive_workers(values.get("workers")),
         {key: value for key, value in values.items() if key in extra},
     )
+
+
+def listed(value: str) -> list[str]:
+    """The names in a value such as ``a``, ``a,b`` or ``['a', 'b']``."""
+    return [part.strip("'\"[] ") for part in value.split(",")]
 
 
 def chapters_of(overrides: Iterable[str], extra_dir: str | None = None) -> tuple[list[str], list[str]]:
@@ -73,7 +78,7 @@ def chapters_of(overrides: Iterable[str], extra_dir: str | None = None) -> tuple
     for text in overrides:
         key, _, value = text.partition("=")
         if key == "chapter":
-            chosen = [part.strip("'\" ") for part in value.strip("[]").split(",")]
+            chosen = listed(value)
         else:
             rest.append(text)
     for number in chosen:
@@ -93,8 +98,7 @@ def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[s
             raise InputError(f"unknown figure '{figure}': no chapter {number}")
         return [number]
     owner = {name: number for number in chapters.numbers() for name in chapters.names(number)}
-    only = values.get("only", "null").strip("'\"[]")
-    named = [] if only == "null" else [name.strip("'\" ") for name in only.split(",")]
+    named = [name for name in listed(values.get("only", "null")) if name != "null"]
     for name in named:
         if name not in owner:
             raise InputError(f"unknown experiment '{name}': {nearest(name, owner)}")
@@ -112,8 +116,7 @@ def of_chapter(number: str, numbers: Sequence[str], overrides: Sequence[str]) ->
     for text in overrides:
         key, _, value = text.partition("=")
         if key == "only" and "," in value:
-            names = [name.strip("'\" ") for name in value.strip("[]").split(",")]
-            text = f"only=[{','.join(name for name in names if name not in others)}]"
+            text = f"only=[{','.join(name for name in listed(value) if name not in others)}]"
         result.append(text)
     return result
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 from dexrepro.commands import FAILED, OK, command, option, out, say, warn
@@ -74,11 +75,10 @@ def show_command(options: argparse.Namespace) -> int:
 )  # fmt: skip
 def draw_command(options: argparse.Namespace) -> int:
     """``dexrepro draw [FOLDER ...] [key=value ...]``: figures and tables again from what is on disk."""
-    from dexrepro.plan import plan_chapter, select
     from dexrepro.pool import sentence
     from dexrepro.report.damage import check_result
     from dexrepro.runner import redraw
-    from dexrepro.selection import existing, quoted, selected
+    from dexrepro.selection import selected
     from dexrepro.storage import read_json
 
     folders, words = ([text for text in options.selection if ("=" in text) == keyed] for keyed in (False, True))
@@ -88,19 +88,9 @@ def draw_command(options: argparse.Namespace) -> int:
         from dexrepro.report import export
 
         kind, look = export.checked(extra.pop("format", "pdf"), look or "paper")
-    if folders:
-        if other := {"chapter", "only", *extra} & set(given):
-            raise InputError(f"{', '.join(sorted(other))}: a folder says which result; leave out one of the two")
-        found = [Path(folder) for folder in folders]
-    else:
-        parts = {n: select(n, only or None, None) for n in numbers}
-        found = [existing(results) / f"chapter{n}" / e.name for n, experiments in parts.items() for e in experiments]
-        if extra:
-            words = [quoted(f"results={results}"), *(quoted(f"case={value}") for value in extra.values())]
-            words += [f"only=[{','.join(only)}]"] if only else []
-            plans = [plan for number in numbers for plan in plan_chapter(number, words, write=False)[0]]
-            found = [plan.folder for plan in plans]
-        found = [folder for folder in found if (folder / "run.json").exists()]
+    if folders and (other := {"chapter", "only", *extra} & set(given)):
+        raise InputError(f"{', '.join(sorted(other))}: a folder says which result; leave out one of the two")
+    found = [Path(folder) for folder in folders] or _folders(numbers, only, results, extra.get("case"))
     if not found:
         raise InputError(f"there is no such result in {results}; run first: dexrepro run {' '.join(options.selection)}")
     checked = [check_result(folder, "metrics.json", "config.yaml", series=True) for folder in found]
@@ -122,6 +112,21 @@ def draw_command(options: argparse.Namespace) -> int:
             for path in made:
                 say(path)
     return status
+
+
+def _folders(numbers: Sequence[str], only: Sequence[str], results: Path, case: str | None) -> list[Path]:
+    """The results that are selected, as far as they are there."""
+    from dexrepro.config import selecting
+    from dexrepro.plan import plan_chapter, select
+    from dexrepro.selection import existing, quoted
+
+    existing(results)
+    if case is None:
+        found = [results / f"chapter{n}" / e.name for n in numbers for e in select(n, list(only) or None, None)]
+    else:
+        words = [*selecting(results, only), quoted(f"case={case}")]
+        found = [plan.folder for n in numbers for plan in plan_chapter(n, words, write=False)[0]]
+    return [folder for folder in found if (folder / "run.json").exists()]
 
 
 @command("build the HTML page from files", ("results",))
@@ -146,12 +151,12 @@ def render_command(options: argparse.Namespace) -> int:
     """
     from dexrepro import chapters
     from dexrepro.report import animation
-    from dexrepro.selection import selected
+    from dexrepro.selection import listed, selected
 
     folders = [Path(text) for text in options.selection if "=" not in text]
     words = [text for text in options.selection if "=" in text]
     numbers, only, results, _, values = selected(words, "render")
-    allow = [name for name in values.get("allow", "").strip("[]").split(",") if name]
+    allow = [*filter(None, listed(values.get("allow", "")))]
     kind = values.get("format", "gif")
     if kind not in ("gif", "mp4"):
         raise refused("format", kind, "be gif or mp4")
