@@ -264,17 +264,6 @@ class Contents:
         }
 
 
-def in_book_order(figures: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Figures by number, 2.9a after 2.9, those of our own (2.A) last."""
-
-    def place(figure: Mapping[str, Any]) -> tuple[int, str]:
-        rest = figure["id"].partition(".")[2]
-        digits = "".join(character for character in rest if character.isdigit())
-        return (int(digits) if digits else 999, rest)
-
-    return sorted(figures, key=place)
-
-
 def _link(source: Path, target: Path) -> None:
     """A hard link, or a copy on another file system."""
     try:

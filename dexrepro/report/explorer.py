@@ -22,6 +22,7 @@ from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment, Film
 from dexrepro.physics.rendering import Camera, Solid
 from dexrepro.recordings import read_frame
+from dexrepro.report import words
 from dexrepro.report.animation import instants, recorded_scene
 from dexrepro.report.damage import check_series
 
@@ -47,7 +48,7 @@ def write(
         if path.exists() and (columns := _columns(path)):
             text, samples, stride = _packed(columns)
             script, key = target / f"series-{case}.js", f"{target.name}/{case}"
-            script.write_text(f"SERIES[{_quoted(key)}] = {_quoted(text)};\n", encoding="utf-8")
+            script.write_text(words.script(f"SERIES[{json.dumps(key)}]", text), encoding="utf-8")
             found[case] = {
                 "key": key, "script": f"files/{target.name}/{script.name}", "csv": f"files/{target.name}/{path.name}",
                 "channels": list(columns), "samples": samples, "stride": stride,
@@ -86,7 +87,7 @@ def scene(place: Path, target: Path, experiment: Experiment) -> dict[str, Any] |
         "solids": [{"kind": item.kind, "size": item.size, "colour": item.colour} for item in seen],
     }  # fmt: skip
     script = target / "scene.js"
-    script.write_text(f"SCENES[{_quoted(target.name)}] = {json.dumps(entry)};\n", encoding="utf-8")
+    script.write_text(words.script(f"SCENES[{json.dumps(target.name)}]", entry), encoding="utf-8")
     return {"case": case, "script": f"files/{target.name}/{script.name}"}
 
 
@@ -155,7 +156,3 @@ def _packed(columns: dict[str, Any]) -> tuple[str, int, int]:
 
 def _name(column: str) -> str:
     return column.partition("[")[0]
-
-
-def _quoted(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("<", "\\u003c") + '"'

@@ -16,7 +16,7 @@ from dexrepro import __version__, chapters, crosscheck, study
 from dexrepro.claims import TIE
 from dexrepro.errors import InputError
 from dexrepro.report import equations, explorer, studies, symbols, verdicts, words
-from dexrepro.report.contents import Contents, in_book_order
+from dexrepro.report.contents import Contents
 from dexrepro.report.damage import check_result
 from dexrepro.report.sources import Sources
 from dexrepro.storage import read_json, whole_folder
@@ -236,5 +236,7 @@ def _results(chapter: Path) -> dict[str, Path]:
 
 
 def _strip(chapter: Mapping[str, Any]) -> dict[str, Any]:
+    """A chapter's figures in the order of the book: 2.9a after 2.9, those of our own (2.A) last."""
     figures = [figure for experiment in chapter["experiments"] for figure in experiment["figures"]]
-    return {"number": chapter["number"], "title": chapter["title"], "figures": in_book_order(figures)}
+    ordered = sorted(figures, key=lambda figure: chapters.natural(figure["id"]))
+    return {"number": chapter["number"], "title": chapter["title"], "figures": ordered}

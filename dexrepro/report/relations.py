@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import ast
-import importlib
+import pkgutil
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from dexrepro.case import targets
 from dexrepro.checks import leaves
 from dexrepro.claims import Claim, Erratum
 
@@ -60,31 +62,11 @@ def concerns(claimed: str, identifier: str) -> bool:
 
 def laws(node: Any) -> list[Any]:
     """Classes and functions that a configuration names by ``_target_``, each once, as far as they can be imported."""
-    found: dict[str, Any] = {}
-    todo = [node]
-    while todo:
-        item = todo.pop()
-        if isinstance(item, Mapping):
-            if isinstance(item.get("_target_"), str):
-                found.setdefault(item["_target_"], None)
-            todo += item.values()
-        elif isinstance(item, Sequence) and not isinstance(item, str):
-            todo += item
-    things = {name: _imported(name) for name in sorted(found)}
-    return [thing for thing in things.values() if hasattr(thing, "__module__")]
-
-
-def _imported(dotted: str) -> Any:
-    parts = dotted.split(".")
-    for cut in range(len(parts) - 1, 0, -1):
-        try:
-            thing: Any = importlib.import_module(".".join(parts[:cut]))
-            for part in parts[cut:]:
-                thing = getattr(thing, part)
-        except (ImportError, AttributeError):
-            continue
-        return thing
-    return None
+    things = []
+    for name in sorted(set(targets(node))):
+        with suppress(ImportError, AttributeError):
+            things.append(pkgutil.resolve_name(name))
+    return [thing for thing in things if hasattr(thing, "__module__")]
 
 
 @cache

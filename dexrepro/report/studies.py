@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 
 from dexrepro import chapters
 from dexrepro.baselines import baseline_dir
-from dexrepro.claims import Claim
+from dexrepro.claims import FRAGILE, OPEN, ROBUST, Claim
 from dexrepro.report import style, verdicts
 from dexrepro.runner import flat
 from dexrepro.study import read_samples
@@ -28,7 +28,7 @@ LOOKS: dict[str, dict[str, Any]] = {  # the book's claims and ours, told apart b
 def finding(study: Mapping[str, Any]) -> str:
     """The study in one sentence."""
     words = [verdicts.robustness(row) for row in study["claims"].values()]
-    counts = [f"{words.count(word)} {word}" for word in ("robust", "fragile", "open") if word in words]
+    counts = [f"{words.count(word)} {word}" for word in (ROBUST, FRAGILE, OPEN) if word in words]
     return f"Of {len(words)} claims over {study['samples']} samples: {', '.join(counts)}"
 
 
