@@ -28,14 +28,14 @@ from dexrepro.commands import (  # noqa: F401  each declares its commands
     run,
     warn,
 )
-from dexrepro.errors import InputError, existing_folder
+from dexrepro.errors import COMPLETES, InputError, existing_folder
 from dexrepro.keys import TAKEN, described
 
 STATUSES = {
     OK: "done; check: the same as stored",
     FAILED: "a case failed or cannot be drawn; check: something differs; the output is no longer read",
     WRONG: "the input cannot be used, or results are missing; one sentence says what",
-    INTERRUPTED: "interrupted; the same command completes what is missing",
+    INTERRUPTED: f"interrupted; {COMPLETES}",
 }
 
 
@@ -47,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return _dispatch(_global_options(arguments))
     except KeyboardInterrupt:
-        warn("interrupted; the same command completes what is missing")
+        warn(STATUSES[INTERRUPTED])
         return INTERRUPTED
     except Exception as error:
         if isinstance(error, BrokenPipeError):  # who reads the output has seen enough

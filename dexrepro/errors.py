@@ -9,6 +9,8 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
+COMPLETES = "the same command completes what is missing"
+
 
 class InputError(Exception):
     """Something the user wrote cannot be used; the message is one sentence that says what would be right."""

@@ -25,11 +25,10 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
-from dexrepro.errors import InputError, whole_number
+from dexrepro.errors import COMPLETES, InputError, whole_number
 
 TICK = 0.2  # s between looks at workers whose end nobody announces
 BLAS_THREADS = "DEXREPRO_BLAS_THREADS"  # variable of the environment: another count than one, to see what rounding does
-COMPLETES = "the same command completes what is missing"
 
 
 @dataclass(frozen=True)

@@ -24,10 +24,10 @@ from dexrepro import __version__, chapters
 from dexrepro.case import live, targets
 from dexrepro.case import run as run_case
 from dexrepro.checks import differences, leaves
-from dexrepro.errors import InputError
+from dexrepro.errors import COMPLETES, InputError
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
 from dexrepro.plan import PARTIAL, Job, Plan, check_own, import_anew, outdated, own_digest, presentation
-from dexrepro.pool import COMPLETES, Failure, Pool, start_method
+from dexrepro.pool import Failure, Pool, start_method
 from dexrepro.progress import Silent
 from dexrepro.storage import (
     claimed,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from dexrepro.commands import FAILED, OK, SHOWN, WRONG, command, option, out, say, warn
 from dexrepro.commands.run import WITHOUT_PYBULLET, launch
-from dexrepro.errors import InputError, nearest, refused, whole_number
+from dexrepro.errors import COMPLETES, InputError, nearest, refused, whole_number
 from dexrepro.keys import SELECTION
 
 if TYPE_CHECKING:
@@ -231,7 +231,7 @@ def _study_job(config: Any) -> None:
 
     enter_launch_folder()
     if _study(["workers=1", *config.selection], shown=False) != OK:
-        raise JobFailed("a process was killed; the same command completes what is missing")
+        raise JobFailed(f"a process was killed; {COMPLETES}")
 
 
 def _print_study(name: str, path: Path, results: Path) -> None:
