@@ -125,9 +125,9 @@ class Bar(Lines):
 
 def expected(cases: Sequence[str]) -> dict[str, float]:
     """Seconds [s] that each case ``experiment.case`` took when it was measured; of a new one its experiment's mean."""
-    from dexrepro.measured import measured
+    from dexrepro.timings import timings
 
-    seconds: dict[str, float] = measured().get("cases", {})
+    seconds: dict[str, float] = timings().get("cases", {})
     by_experiment: dict[str, list[float]] = {}
     for name, value in seconds.items():
         by_experiment.setdefault(name.partition(".")[0], []).append(value)

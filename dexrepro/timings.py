@@ -12,7 +12,7 @@ from typing import Any
 from dexrepro.storage import read_json
 
 
-def measured() -> dict[str, Any]:
+def timings() -> dict[str, Any]:
     """commands {command: {"machine": text, "first" and "again": {seconds, memory [GB], disk [GB]}}}, and cases
     {experiment.case: seconds}."""
     from dexrepro.baselines import baseline_dir
@@ -26,7 +26,7 @@ def markdown() -> str:
     """The README's table of what the two commands take."""
     from dexrepro.progress import duration
 
-    found = measured()
+    found = timings()
     if not found.get("commands"):
         return "`make measure` finds out what the two commands take on a machine."
     lines = ["| command | time | memory | disk |", "| --- | --- | --- | --- |"]

@@ -11,7 +11,7 @@ import pytest
 from conftest import Command, Shell
 from rich.console import Console
 
-from dexrepro import measured, progress
+from dexrepro import progress, timings
 from dexrepro.progress import Bar, Lines, duration
 from dexrepro.runner import CaseEntry
 
@@ -27,7 +27,7 @@ class Clock:
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     monkeypatch.setattr(progress, "time", clock := Clock())
     times = {"cases": {"long.a": 60.0, "long.b": 60.0, "long.c": 30.0}}
-    monkeypatch.setattr(measured, "measured", lambda: times)
+    monkeypatch.setattr(timings, "timings", lambda: times)
     return clock
 
 

@@ -16,7 +16,7 @@ import pytest
 from conftest import ROOT, Shell
 from test_cli import SHORT
 
-from dexrepro import chapters, measured, scoreboard
+from dexrepro import chapters, scoreboard, timings
 from dexrepro.control.contract import Measured, check
 
 README = (ROOT / "README.md").read_text()
@@ -230,8 +230,8 @@ def test_the_table_counts_the_stored_verdicts() -> None:
 
 def test_what_the_commands_take_is_what_was_measured() -> None:
     """``make measure`` writes both; the estimate at the start of a run has a time for the cases that were measured."""
-    assert f"<!-- measured -->\n{measured.markdown()}\n<!-- end -->" in README
-    known = measured.measured()["cases"]
+    assert f"<!-- measured -->\n{timings.markdown()}\n<!-- end -->" in README
+    known = timings.timings()["cases"]
     experiments = {name for number in chapters.numbers() for name in chapters.names(number)}
     assert {name.partition(".")[0] for name in known} <= experiments
     assert all(seconds >= 0 for seconds in known.values())
