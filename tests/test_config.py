@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from dexrepro import chapters
-from dexrepro.config import SETTINGS, _names, compose_chapter, experiment_cases, inherited, resolved_block, selecting
+from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block, selecting
 from dexrepro.errors import InputError
+from dexrepro.interpolation import inherited, names_of
 from dexrepro.plan import plan_chapter
 from dexrepro.provenance import Provenance, commented_leaves, leaves_with_comments, parse_provenance
 
@@ -97,7 +98,7 @@ def test_interpolations_mean_what_omegaconf_says_they_mean() -> None:
 
     composed = compose_chapter("7")
     block = {key: value for key, value in composed["impedance_tracking"].items() if key != "cases"}
-    names = {**_names(composed), "impedance_tracking": block}
+    names = {**names_of(composed), "impedance_tracking": block}
     whole = OmegaConf.to_container(OmegaConf.create(names)["impedance_tracking"], resolve=True)
     assert resolved_block(composed, "impedance_tracking") == whole
 
