@@ -7,7 +7,7 @@ import gzip
 import re
 import warnings
 import zlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 from xml.parsers import expat
@@ -39,38 +39,50 @@ def check_result(folder: Path, *names: str, series: bool = False) -> Experiment:
     if not (folder / "run.json").exists():
         raise InputError(f"{folder} holds no result (no run.json)")
     run = _read(folder / "run.json")
-    _require(folder / "run.json", run, RUN)
-    for case, entry in run["cases"].items():
-        _require(folder / "run.json", entry, ENTRY, f"cases.{case}.")
-        if not re.fullmatch(CASE, case):
-            raise _damaged(folder / "run.json", f"cases: {case[:40]!r} is no name of a case")
-    number, name = run["chapter"], run["experiment"]
-    known = (
-        {e.name: e for e in chapters.load(number).experiments} if number in (*chapters.numbers(), chapters.OWN) else {}
-    )
-    if name not in known:
-        raise _damaged(folder / "run.json", f"there is no experiment '{name}' in a chapter '{number}'")
-    for file in names:
-        data = _read(folder / file)
-        if file == "claims.json":
-            for place, claim in enumerate(data if isinstance(data, list) else [data]):
-                _require(folder / file, claim, CLAIM, f"{place}.")
-                if not isinstance(claim.get("margin"), int | float | None):
-                    raise _damaged(folder / file, f"{place}.margin is no number")
+    experiment = _check_run(folder / "run.json", run)
+    for name in names:
+        data = _read(folder / name)
+        if name == "claims.json":
+            _check_claims(folder / name, data)
         elif not isinstance(data, dict):
-            raise _damaged(folder / file, "it holds no dict")
-        for key, value in data.items() if file == "metrics.json" else ():
-            if not isinstance(value, int | float | None) or not key.startswith(f"{name}."):
-                raise _damaged(folder / file, f"{key} is no number of {name}")
+            raise _damaged(folder / name, "it holds no dict")
+        for key, value in data.items() if name == "metrics.json" else ():
+            if not isinstance(value, int | float | None) or not key.startswith(f"{experiment.name}."):
+                raise _damaged(folder / name, f"{key} is no number of {experiment.name}")
     if series:
-        for case in run["cases"]:
-            if not any((folder / "series").glob(f"{case}.*")):
-                raise _damaged(folder, f"no series of the case '{case}'")
-        for path in sorted((folder / "series").glob("*.gz")):
-            check_series(path)
-        for path in sorted((folder / "series").glob("*.png")):
-            read_picture(path)
-    return known[name]
+        _check_recordings(folder, run["cases"])
+    return experiment
+
+
+def _check_run(path: Path, run: Any) -> Experiment:
+    _require(path, run, RUN)
+    for case, entry in run["cases"].items():
+        _require(path, entry, ENTRY, f"cases.{case}.")
+        if not re.fullmatch(CASE, case):
+            raise _damaged(path, f"cases: {case[:40]!r} is no name of a case")
+    number, name = run["chapter"], run["experiment"]
+    known = chapters.load(number).experiments if number in (*chapters.numbers(), chapters.OWN) else ()
+    for experiment in known:
+        if experiment.name == name:
+            return experiment
+    raise _damaged(path, f"there is no experiment '{name}' in a chapter '{number}'")
+
+
+def _check_claims(path: Path, claims: Any) -> None:
+    for place, claim in enumerate(claims if isinstance(claims, list) else [claims]):
+        _require(path, claim, CLAIM, f"{place}.")
+        if not isinstance(claim.get("margin"), int | float | None):
+            raise _damaged(path, f"{place}.margin is no number")
+
+
+def _check_recordings(folder: Path, cases: Iterable[str]) -> None:
+    for case in cases:
+        if not any((folder / "series").glob(f"{case}.*")):
+            raise _damaged(folder, f"no series of the case '{case}'")
+    for path in sorted((folder / "series").glob("*.gz")):
+        check_series(path)
+    for path in sorted((folder / "series").glob("*.png")):
+        read_picture(path)
 
 
 def check_series(path: Path) -> None:

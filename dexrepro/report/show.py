@@ -176,11 +176,8 @@ def _about_erratum(number: str, erratum: Erratum, results: Path) -> Iterator[str
     for name in erratum.evidence:
         value = _metrics(number, name.partition(".")[0], results)[1].get(name)
         yield f"  shown by    {name} = {_number(value)}"
-    composed, touching = compose_chapter(number), []
-    for claim in chapters.load(number).claims:
-        if relations.errata_of(claim, [erratum], composed):
-            touching.append(claim.id)
-    if touching:
+    composed, claims = compose_chapter(number), chapters.load(number).claims
+    if touching := [claim.id for claim in claims if relations.errata_of(claim, [erratum], composed)]:
         yield f"  touches     {', '.join(touching)}"
     yield from _written(number, erratum.id)
     if erratum.switch:
