@@ -76,11 +76,15 @@ Shell = Callable[..., subprocess.CompletedProcess[str]]
 def shell(tmp_path: Path) -> Shell:
     """Run a command line as a user would, in an empty folder."""
 
-    def run(command: str, cwd: Path = tmp_path, timeout: float = 120) -> subprocess.CompletedProcess[str]:
-        env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
+    def run(
+        command: str, cwd: Path = tmp_path, timeout: float = 120, **environment: str
+    ) -> subprocess.CompletedProcess[str]:
+        path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+        env = {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT), **environment}
         return subprocess.run(
-            command, shell=True, cwd=cwd, env=env, capture_output=True, text=True, timeout=timeout, check=False
-        )
+            command, shell=True, cwd=cwd, env=env, capture_output=True, text=True, timeout=timeout, check=False,
+            errors="replace",
+        )  # fmt: skip
 
     return run
 

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import ast
-import os
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, Command, whole
+from conftest import ROOT, Command, Shell, whole
 
 from dexrepro import chapters
 
@@ -160,19 +157,11 @@ def test_what_is_shipped_is_not_renewed_by_what_is_the_users(
     assert not (toy / "shipped").exists()
 
 
-def typed(toy: Path, line: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """A command line in a shell, in the folder of the toy."""
-    env = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT)}
-    return subprocess.run(
-        line, shell=True, cwd=toy, env=env | environment, capture_output=True, text=True, timeout=55, check=False,
-        errors="replace",
-    )  # fmt: skip
-
-
 @pytest.mark.parametrize("module", ["numbers", "pandas", "yaml", "json", "hydra"])
-def test_a_file_of_the_user_does_not_take_the_place_of_a_package(toy: Path, toy_result: Path, module: str) -> None:
+@pytest.mark.usefixtures("toy_result")
+def test_a_file_of_the_user_does_not_take_the_place_of_a_package(toy: Path, shell: Shell, module: str) -> None:
     (toy / f"{module}.py").write_text("raise SystemExit('taken over')")
-    done = typed(toy, "dexrepro check")
+    done = shell("dexrepro check", timeout=55)
     assert "taken over" not in done.stdout + done.stderr
     assert "chapter 90: " in done.stdout
 
@@ -199,9 +188,11 @@ def test_a_law_beside_the_data_is_found(toy: Path, command: Command) -> None:
         ("dexrepro draw", {"LC_ALL": "C", "PYTHONUTF8": "0", "HOME": "/nonexistent", "MPLCONFIGDIR": "/dev/null/no"}),
     ],
 )
-def test_odd_surroundings_change_nothing(toy: Path, toy_result: Path, line: str, environment: dict[str, str]) -> None:
+def test_odd_surroundings_change_nothing(
+    toy_result: Path, shell: Shell, line: str, environment: dict[str, str]
+) -> None:
     before = (toy_result / "metrics.json").read_bytes()
-    done = typed(toy, line, **environment)
+    done = shell(line, timeout=55, **environment)
     assert "Traceback" not in done.stderr + done.stdout
     assert done.returncode in (0, 1, 2)
     assert (toy_result / "metrics.json").read_bytes() == before
