@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from pathlib import Path
 
-from dexrepro.kept import kept
+from dexrepro.disk_cache import cached
 
 Name = tuple[str, str]
 """A module and a name in it; "" stands for all that the module holds."""
@@ -29,7 +29,7 @@ _SKIPPED = {"ctx", "type_comment", "kind", "annotation", "returns", "type_params
 def digest(roots: Iterable[Name]) -> str:
     """Hash of all code that the roots can reach."""
     roots = sorted(set(roots))
-    return str(kept(f"closure {roots}", lambda: _digest(roots)))
+    return str(cached(f"closure {roots}", lambda: _digest(roots)))
 
 
 def _digest(roots: Sequence[Name]) -> tuple[str, set[Path] | None]:

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 from dexrepro import chapters
 from dexrepro.checks import check_values, is_number, is_whole, leaves, value_at
+from dexrepro.disk_cache import cached
 from dexrepro.errors import InputError, nearest, refused
 from dexrepro.interpolation import inherited, names_of, resolved
-from dexrepro.kept import kept
 from dexrepro.physics.engine import ENGINES, is_installed
 
 if TYPE_CHECKING:  # Hydra is imported where it is needed: it takes as long as a whole command may
@@ -184,7 +184,7 @@ def _shipped(folder: str, chapter: str, changed: float) -> dict[str, Any]:
         log.info("composed chapter %s from %d files of %s", chapter, len(files), next(iter(folders)))
         return _compose(chapter), [Path(__file__), *files, *folders, *config_dir().rglob("*.yaml")]
 
-    return dict(kept(f"chapter {chapter} of {folder}, {os.environ.get(chapters.ADDED)}", composed))
+    return dict(cached(f"chapter {chapter} of {folder}, {os.environ.get(chapters.ADDED)}", composed))
 
 
 def _compose(chapter: str, overrides: Sequence[str] = ()) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any
 from dexrepro import baselines, chapters
 from dexrepro.claims import filled
 from dexrepro.config import compose_chapter, config_files, experiment_cases, settings
-from dexrepro.kept import kept
+from dexrepro.disk_cache import cached
 from dexrepro.study import robustness_of
 
 
@@ -31,7 +31,7 @@ def chapter_listing(number: str) -> dict[str, Any]:
         files |= {path.parent for path in files}
         return _listed(number), {path for path in files if path.exists()}
 
-    return dict(kept(f"list {number} of {chapters.folders()[number]}", listed))
+    return dict(cached(f"list {number} of {chapters.folders()[number]}", listed))
 
 
 def _listed(number: str) -> dict[str, Any]:

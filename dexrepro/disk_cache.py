@@ -20,7 +20,7 @@ SETTLED = 1.0  # s: what was written later than so long before it was read may b
 FORGOTTEN = 60 * 24 * 3600.0  # s: what is older is found out again
 
 
-def kept(what: str, make: Callable[[], tuple[Any, Iterable[Path] | None]]) -> Any:
+def cached(what: str, make: Callable[[], tuple[Any, Iterable[Path] | None]]) -> Any:
     """What ``make`` returns, plain data, and the files (or folders, for the names in them) from which it follows.
 
     what: names it among all that this installation keeps. Without files (None) nothing is kept; nor where no folder

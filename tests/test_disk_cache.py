@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
-from dexrepro import chapters, closure, kept
+from dexrepro import chapters, closure, disk_cache
 from dexrepro.config import compose_chapter
 
 
@@ -27,7 +27,7 @@ def lengths(folder: Path, calls: list[int]) -> object:
         files = sorted(folder.glob("*.txt"))
         return [len(path.read_text()) for path in files], [folder, *files]
 
-    return kept.kept("lengths", make)
+    return disk_cache.cached("lengths", make)
 
 
 def settle(*paths: Path, ago: float = 60) -> None:
