@@ -21,7 +21,7 @@ from typing import Any
 from dexrepro import chapters
 from dexrepro.checks import is_number
 from dexrepro.config import selecting
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, one_line
 from dexrepro.plan import Plan, outdated, plan_chapter, select
 from dexrepro.pool import BLAS_THREADS
 from dexrepro.report.damage import check_result, read_table
@@ -88,7 +88,7 @@ class Baseline:
                 if len({len(column) for column in table.values()}) > 1:
                     raise ValueError("the columns of a table have one length")
         except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
-            raise InputError(f"{path} is no baseline ({' '.join(str(error).split())})") from error
+            raise InputError(f"{path} is no baseline ({one_line(error)})") from error
         return found
 
 

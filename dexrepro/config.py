@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from dexrepro import chapters
 from dexrepro.checks import check_values, is_number, is_whole, leaves, value_at
 from dexrepro.disk_cache import cached
-from dexrepro.errors import InputError, nearest, refused
+from dexrepro.errors import InputError, nearest, one_line, refused
 from dexrepro.interpolation import inherited, names_of, resolved
 from dexrepro.physics.engine import ENGINES, is_installed
 
@@ -81,9 +81,9 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         if (key := getattr(cause, "full_key", None)) and "not in struct" in str(cause):
             known = _keys(inherited(raw))
             raise InputError(f"unknown key '{key}': {nearest(key, known)} (a new one: '+{key}=VALUE')") from error
-        raise InputError(" ".join(str(cause).split())) from error
+        raise InputError(one_line(cause)) from error
     except (yaml.YAMLError, ValueError, TypeError) as error:
-        raise InputError(" ".join(str(error.__cause__ or error).split())) from error
+        raise InputError(one_line(error.__cause__ or error)) from error
     if unknown := [key for key in composed if key not in shipped]:
         if not extra_dir:
             raise InputError(f"unknown key '{unknown[0]}': {nearest(unknown[0], shipped)}")
@@ -150,7 +150,7 @@ def read_config(path: Path) -> dict[str, Any]:
         line = error.object.count(b"\n", 0, error.start) + 1
         raise InputError(f"{path}: line {line} is not UTF-8; save the file as UTF-8") from error
     except (yaml.YAMLError, OmegaConfBaseException, ValueError) as error:
-        raise InputError(f"{path} is no YAML file: {' '.join(str(error).split())}") from error
+        raise InputError(f"{path} is no YAML file: {one_line(error)}") from error
     if not isinstance(content, dict) or not content or not all(isinstance(key, str) for key in content):
         raise InputError(f"{path} holds no keys: it must consist of lines such as 'only: EXPERIMENT'")
     return content

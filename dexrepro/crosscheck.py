@@ -18,7 +18,7 @@ from dexrepro import chapters
 from dexrepro.baselines import Baseline, agrees, baseline_dir
 from dexrepro.claims import NOT_EVALUATED
 from dexrepro.config import selecting
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, one_line
 from dexrepro.plan import Plan, plan_chapter, uses_engine
 from dexrepro.progress import Silent
 from dexrepro.runner import flat, run_plans
@@ -132,7 +132,7 @@ def stored(path: Path) -> list[Comparison]:
     try:
         return [_of(row) for row in read_json(path)]
     except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
-        raise InputError(f"{path} is no table of comparisons ({' '.join(str(error).split())})") from error
+        raise InputError(f"{path} is no table of comparisons ({one_line(error)})") from error
 
 
 def _of(row: Mapping[str, Any]) -> Comparison:

@@ -16,6 +16,16 @@ class InputError(Exception):
     """Something the user wrote cannot be used; the message is one sentence that says what would be right."""
 
 
+def one_line(thing: object) -> str:
+    """What an error, or anything else, says of itself, without breaks."""
+    return " ".join(str(thing).split())
+
+
+def sentence(error: BaseException) -> str:
+    """What went wrong, in one line."""
+    return one_line(error) if isinstance(error, InputError) else f"{type(error).__name__}: {one_line(error)}"
+
+
 def refused(key: str, value: object, must: str) -> InputError:
     """The error of a value that is not allowed; must: what would be right, such as "be greater than 0"."""
     return InputError(f"{key} = {value} is not allowed: it must {must}")

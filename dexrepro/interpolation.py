@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from dexrepro.checks import value_at
-from dexrepro.errors import InputError, nearest
+from dexrepro.errors import InputError, nearest, one_line
 
 INHERITS = "inherits"
 
@@ -93,7 +93,7 @@ def resolved(names: Mapping[str, Any], experiment: str, block: Mapping[str, Any]
     try:
         return OmegaConf.to_container(config[experiment], resolve=True)  # type: ignore[return-value]
     except OmegaConfBaseException as error:
-        raise InputError(f"{experiment}: {' '.join(str(error).split())}") from error
+        raise InputError(f"{experiment}: {one_line(error)}") from error
 
 
 class _NotPlainError(Exception):

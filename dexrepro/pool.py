@@ -25,7 +25,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
-from dexrepro.errors import COMPLETES, InputError, whole_number
+from dexrepro.errors import COMPLETES, InputError, sentence, whole_number
 
 TICK = 0.2  # s between looks at workers whose end nobody announces
 BLAS_THREADS = "DEXREPRO_BLAS_THREADS"  # variable of the environment: another count than one, to see what rounding does
@@ -42,12 +42,6 @@ class Failure:
     @classmethod
     def of(cls, error: BaseException) -> Failure:
         return cls(sentence(error), "".join(traceback.format_exception(error)))
-
-
-def sentence(error: BaseException) -> str:
-    """What went wrong, in one line."""
-    text = " ".join(str(error).split())
-    return text if isinstance(error, InputError) else f"{type(error).__name__}: {text}"
 
 
 @dataclass

@@ -24,7 +24,7 @@ from dexrepro import __version__, chapters
 from dexrepro.case import live, targets
 from dexrepro.case import run as run_case
 from dexrepro.checks import differences, leaves
-from dexrepro.errors import COMPLETES, InputError
+from dexrepro.errors import COMPLETES, InputError, one_line
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
 from dexrepro.plan import PARTIAL, Job, Plan, check_own, import_anew, outdated, own_digest, presentation
 from dexrepro.pool import Failure, Pool, start_method
@@ -138,7 +138,7 @@ def execute(job: Job) -> CaseEntry:
             raise InputError("a file that it uses was edited meanwhile; the same command runs it again")
         recording, metrics, wall = _run(experiment, config, job.seed)
     factor = recording.simulated / wall if recording.simulated else None
-    doubts = sorted({" ".join(str(warning.message).split()) for warning in caught})
+    doubts = sorted({one_line(warning.message) for warning in caught})
     entry = CaseEntry(recording.status, recording.steps, recording.simulated, wall, factor, doubts)
     with whole_folder(Path(job.folder)) as folder:
         save_recording(recording, folder / "series", job.case, experiment.rate)

@@ -14,7 +14,7 @@ from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 
 from dexrepro.config import config_dir, in_quotes
-from dexrepro.errors import COMPLETES, InputError, folder_named
+from dexrepro.errors import COMPLETES, InputError, folder_named, one_line
 
 PLUGINS = {  # by launcher: the package that has it, and the extra that brings it
     "ray": ("hydra_plugins.hydra_ray_launcher", "ray"),
@@ -44,7 +44,7 @@ def launch(arguments: Sequence[str], job: Callable[[Any], None]) -> None:
     except (InputError, JobFailed):
         raise
     except (HydraException, OmegaConfBaseException, ValueError, FileNotFoundError, PermissionError) as error:
-        raise InputError(" ".join(str(error).split())) from error
+        raise InputError(one_line(error)) from error
     except Exception as error:  # each launcher has its own for a process that is gone
         reason = f"{type(error).__name__}: {str(error).strip().partition(chr(10))[0]}"
         raise JobFailed(f"its process died; {COMPLETES} ({reason})") from error

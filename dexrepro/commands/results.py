@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from dexrepro.commands import FAILED, OK, command, option, out, say, warn
-from dexrepro.errors import InputError, refused
+from dexrepro.errors import InputError, refused, sentence
 from dexrepro.keys import SELECTION
 
 
@@ -75,7 +75,6 @@ def show_command(options: argparse.Namespace) -> int:
 )  # fmt: skip
 def draw_command(options: argparse.Namespace) -> int:
     """``dexrepro draw [FOLDER ...] [key=value ...]``: figures and tables again from what is on disk."""
-    from dexrepro.pool import sentence
     from dexrepro.report.damage import check_result
     from dexrepro.runner import redraw
     from dexrepro.selection import selected

@@ -16,7 +16,7 @@ import yaml
 
 from dexrepro import chapters
 from dexrepro.config import CASE
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, one_line
 from dexrepro.experiment import Experiment
 from dexrepro.storage import opened, read_json, read_text, read_yaml, require
 
@@ -111,7 +111,7 @@ def read_table(path: Path) -> pd.DataFrame:
             _check_lines(file)
         return read_frame(path)
     except (OSError, ValueError) as error:
-        reason = " ".join(str(error).split())
+        reason = one_line(error)
         raise InputError(f"{path} cannot be used ({reason}); draw it again: dexrepro draw") from error
 
 
@@ -182,5 +182,5 @@ def _read(path: Path) -> Any:
 
 
 def _damaged(path: Path, reason: object) -> InputError:
-    reason = str(getattr(reason, "strerror", None) or reason)
-    return InputError(f"{path} cannot be used ({' '.join(reason.split())}); delete the result and run it again")
+    reason = one_line(getattr(reason, "strerror", None) or reason)
+    return InputError(f"{path} cannot be used ({reason}); delete the result and run it again")

@@ -22,7 +22,7 @@ from markupsafe import escape
 
 from dexrepro import chapters
 from dexrepro.config import config_files
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, one_line
 from dexrepro.storage import read_yaml
 
 _NUMBER = r"\(([1-9]\d?)\.([1-9]\d{0,2})([a-z]?)\)"
@@ -64,7 +64,7 @@ def printed() -> dict[str, tuple[str, str]]:
             sections = read_yaml(path) if path.exists() else {}
             new = {name: (section, latex) for section, texts in sections.items() for name, latex in texts.items()}
         except (OSError, ValueError, TypeError, AttributeError, yaml.YAMLError) as error:
-            reason = " ".join(str(error).split())
+            reason = one_line(error)
             raise InputError(f"{path} must hold sections, and in each equations by number ({reason})") from error
         for name, (section, latex) in new.items():
             if not re.fullmatch(r"\d+\.\d+\w?", str(name)) or not isinstance(latex, str) or not isinstance(name, str):
