@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 import os
+import shlex
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -183,9 +184,7 @@ def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> Chap
             continue
         folder = results / f"chapter{chapter}" / experiment.name
         if not (folder / "run.json").exists():
-            raise ResultsMissing(
-                f"no results of {experiment.name}; run: dexrepro run chapter={chapter} only={experiment.name}"
-            )
+            raise _missing(chapter, experiment.name, results)
         check_result(folder, "metrics.json", "claims.json")
         if reason := outdated(by_name[experiment.name], read_json(folder / "run.json")):
             report.outdated.append(f"{experiment.name}: {reason}")
@@ -193,6 +192,12 @@ def check_chapter(chapter: str, results: Path, only: Sequence[str] = ()) -> Chap
         _compare_claims(report, experiment.name, read_json(folder / "claims.json"), stored.claims)
         _compare_tables(report, folder / "tables", stored)
     return report
+
+
+def _missing(chapter: str, experiment: str, results: Path, case: str = "") -> ResultsMissing:
+    where = "" if results == Path("results") else f" results={shlex.quote(str(results))}"
+    command = f"dexrepro run{chapters.option(chapter)} chapter={chapter} only={experiment}{case}{where}"
+    return ResultsMissing(f"no results of {experiment}; run: {command}")
 
 
 def check_cases(chapter: str, results: Path, only: Sequence[str], case: str) -> ChapterReport:
@@ -203,9 +208,7 @@ def check_cases(chapter: str, results: Path, only: Sequence[str], case: str) -> 
         places = plan.folder, results / f"chapter{chapter}" / plan.experiment
         folder = next((place for place in places if (place / "run.json").exists()), None)
         if folder is None:
-            raise ResultsMissing(
-                f"no results of {plan.experiment}; run: dexrepro run chapter={chapter} only={plan.experiment} {case}"
-            )
+            raise _missing(chapter, plan.experiment, results, f" {case}")
         check_result(folder, "metrics.json")
         run = read_json(folder / "run.json")
         if reason := outdated(plan, run | {"contents": {c: run["contents"].get(c) for c in plan.contents}}):

@@ -13,6 +13,7 @@ import importlib
 import importlib.util
 import os
 import re
+import shlex
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -29,6 +30,8 @@ from dexrepro.experiment import Experiment
 
 ADDED = "DEXREPRO_EXPERIMENTS"
 """The environment variable with the folders of experiments outside the package, as PATH lists folders."""
+NAMED: dict[Path, Path] = {}
+"""Folders that were added here, as they were named."""
 OWN = "own"
 """Beside the chapters: the scene that a user describes; it is listed, drawn and checked with none of them."""
 
@@ -68,6 +71,7 @@ def add(folder: Path) -> None:
     """Look for experiments in a folder outside the package too, here and in processes started from here."""
     known = [str(path) for path in _added()]
     os.environ[ADDED] = os.pathsep.join(dict.fromkeys([*known, str(folder.resolve())]))
+    NAMED[folder.resolve()] = folder
     forget()
 
 
@@ -80,6 +84,13 @@ def forget() -> None:
 def is_added(number: str) -> bool:
     """Whether a chapter lives outside the package; its configuration and baseline then stand in its own folder."""
     return folders()[number].parent != Path(__file__).parent
+
+
+def option(number: str) -> str:
+    """What a command needs to find a chapter as this one did, " --experiments FOLDER"; "" where it needs nothing."""
+    folder = folders().get(number)
+    name = folder and (NAMED.get(folder) or NAMED.get(folder.parent))
+    return f" --experiments {shlex.quote(str(name))}" if name else ""
 
 
 @cache

@@ -22,7 +22,7 @@ from dexrepro.errors import InputError, folder_named, whole_number
 )  # fmt: skip
 def tune_command(options: argparse.Namespace) -> int:
     """``dexrepro tune case=EXPERIMENT.CASE minimise=METRIC budget=N [law.gain=0.01..0.1 …]``."""
-    from dexrepro import tune
+    from dexrepro import chapters, tune
     from dexrepro.selection import quoted
 
     known, rest = _search_words(options.selection, "tune")
@@ -44,7 +44,8 @@ def tune_command(options: argparse.Namespace) -> int:
     say(f"stored in {path}")
     if found.chosen:
         given = [f"'{word}'" for word in rest if word not in parameters]
-        say(" ".join(["dexrepro run", f"only={experiment} case={search.case}", *given, search.override(found.chosen)]))
+        run = f"dexrepro run{chapters.option(search.chapter)}"
+        say(" ".join([run, f"only={experiment} case={search.case}", *given, search.override(found.chosen)]))
     return OK
 
 

@@ -75,6 +75,7 @@ def show_command(options: argparse.Namespace) -> int:
 )  # fmt: skip
 def draw_command(options: argparse.Namespace) -> int:
     """``dexrepro draw [FOLDER ...] [key=value ...]``: figures and tables again from what is on disk."""
+    from dexrepro import chapters
     from dexrepro.report.damage import check_result
     from dexrepro.runner import redraw
     from dexrepro.selection import selected
@@ -91,7 +92,9 @@ def draw_command(options: argparse.Namespace) -> int:
         raise InputError(f"{', '.join(sorted(other))}: a folder says which result; leave out one of the two")
     found = [Path(folder) for folder in folders] or _folders(numbers, only, results, extra.get("case"))
     if not found:
-        raise InputError(f"there is no such result in {results}; run first: dexrepro run {' '.join(options.selection)}")
+        run = "dexrepro run" + "".join(dict.fromkeys(map(chapters.option, numbers)))
+        run = " ".join([run, *(word for word in options.selection if not word.startswith(("style=", "format=")))])
+        raise InputError(f"there is no such result in {results}; run first: {run}")
     checked = [check_result(folder, "metrics.json", "config.yaml", series=True) for folder in found]
     status = OK
     for folder, experiment in zip(found, checked):

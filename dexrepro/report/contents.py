@@ -221,7 +221,8 @@ class Contents:
         if found["draws"]:
             said = {claim.id: claim.statement for claim in self.chapter.claims}
             data = {
-                "chapter": self.number, "experiment": experiment, "draws": found["draws"], "varied": found["varied"],
+                "chapter": self.number, "option": chapters.option(self.number), "experiment": experiment,
+                "draws": found["draws"], "varied": found["varied"],
                 "claims": [{"id": key, "statement": said.get(key, ""), "parameter": row["parameter"]}
                            for key, row in found["claims"].items()],
             }  # fmt: skip

@@ -48,7 +48,7 @@ def templates() -> jinja2.Environment:
     made = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
     filters = (words.breakable, words.number, words.short_number, words.percent, words.prose, words.unit)
     made.filters |= {function.__name__: function for function in filters}
-    made.globals |= {"VERDICTS": verdicts.VERDICTS, "MARKS": verdicts.MARKS}
+    made.globals |= {"VERDICTS": verdicts.VERDICTS, "MARKS": verdicts.MARKS, "option": chapters.option}
     return made
 
 

@@ -102,9 +102,10 @@ def _about_claim(number: str, claim: Claim, results: Path) -> Iterator[str]:
         cases = {part[1] for part in (metric.split(".") for metric in claim.metrics) if len(part) > 2}
         every = any(metric.count(".") < 2 for metric in claim.metrics)
         some = "" if every else f" 'case=[{','.join(sorted(cases))}]'"
-        yield f"  $ dexrepro run chapter={number} only={name}{some}"
-        yield f"  $ dexrepro check chapter={number} only={name}"
-        yield f"  $ dexrepro study chapter={number} claim={claim.id}"
+        own = chapters.option(number)
+        yield f"  $ dexrepro run{own} chapter={number} only={name}{some}"
+        yield f"  $ dexrepro check{own} chapter={number} only={name}"
+        yield f"  $ dexrepro study{own} chapter={number} claim={claim.id}"
 
 
 def _metrics(number: str, name: str, results: Path) -> tuple[str, dict[str, Any]]:
@@ -158,7 +159,8 @@ def _about_experiment(number: str, entry: dict[str, Any], asked: list[str], resu
         for row in parameters.table(entry["name"], composed, origins, {}):
             yield f"  parameter   {_parameter(row)}"
     yield from _code(number, entry["name"])
-    yield f"  $ dexrepro run {f'figure={asked[0]}' if asked else f'chapter={number} only={experiment.name}'}"
+    what = f"figure={asked[0]}" if asked else f"chapter={number} only={experiment.name}"
+    yield f"  $ dexrepro run{chapters.option(number)} {what}"
 
 
 def _erratum(word: str, results: Path) -> Iterator[str]:
@@ -181,7 +183,7 @@ def _about_erratum(number: str, erratum: Erratum, results: Path) -> Iterator[str
         yield f"  touches     {', '.join(touching)}"
     yield from _written(number, erratum.id)
     if erratum.switch:
-        yield f"  $ dexrepro run chapter={number} {erratum.switch}"
+        yield f"  $ dexrepro run{chapters.option(number)} chapter={number} {erratum.switch}"
 
 
 # ------------------------------------------------------------------------------- equations, symbols, parameters, laws

@@ -89,7 +89,7 @@ function whatIf(place, study) {
     const values = Object.entries(sample.values).map(([key, value]) => `${key}=${value}`);
     told.replaceChildren(
       make("p", { className: "note", textContent: `Draw ${sample.index}: margin ${short(margin)}, ${claim.value} ${margin > 0 ? "holds" : "fails"}; ${parameter.value} = ${typeof value === "string" ? value : short(value)}.` }),
-      make("pre", { className: "command", textContent: `dexrepro run chapter=${study.chapter} only=${study.experiment} ${values.join(" ")}` }));
+      make("pre", { className: "command", textContent: `dexrepro run${study.option} chapter=${study.chapter} only=${study.experiment} ${values.join(" ")}` }));
   }
 
   picture.addEventListener("keydown", (event) => {

@@ -1,0 +1,62 @@
+"""Experiments of a user's own: what a command says next can be typed as it stands."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+from conftest import TOY, Command
+
+from dexrepro import chapters
+
+
+@pytest.fixture
+def mine(command: Command, monkeypatch: pytest.MonkeyPatch) -> Command:
+    """A folder ``more`` with a chapter ``lab`` of one claim, found by ``--experiments`` alone, beside the toy book."""
+    monkeypatch.setattr(chapters, "NAMED", {})
+    before = os.environ[chapters.ADDED]
+    left = shutil.ignore_patterns("needs_more", "equations.yaml", "errata.py", "__pycache__")
+    folder = shutil.copytree(TOY / "chapter90", Path("more/lab"), ignore=left)
+    (folder / "decay").rename(folder / "fade")
+    for name in ("claims.py", "figures.py", "experiment.py"):
+        path = folder / "fade" / name
+        path.write_text(path.read_text().replace("decay.", "fade.").replace("C90.0", "lab.0").replace("90.", "lab."))
+
+    def run(text: str) -> tuple[int, str]:
+        monkeypatch.setenv(chapters.ADDED, before)
+        chapters.NAMED.clear()
+        chapters.forget()
+        return command(text)
+
+    return run
+
+
+@pytest.mark.parametrize("name", ["lab.01", "fade"])
+def test_what_show_says_to_run_finds_the_experiment(mine: Command, name: str) -> None:
+    status, said = mine(f"show {name} --experiments more")
+    assert status == 0, said
+    commands = [line.partition("$ dexrepro ")[2] for line in said.splitlines() if "$ dexrepro " in line]
+    assert commands
+    assert all(" --experiments more chapter=lab " in text for text in commands)
+    run = commands[0].replace("'", "")  # as a shell reads it
+    assert mine(f"{run} workers=1 quiet=true")[0] == 0
+
+
+def test_missing_results_are_run_by_the_command_that_is_given(mine: Command) -> None:
+    Path("there").mkdir()
+    status, said = mine("check --experiments more chapter=lab only=fade results=there")
+    assert status == 2
+    assert "run: dexrepro run --experiments more chapter=lab only=fade results=there" in said
+    status, said = mine("draw --experiments more only=fade style=slides results=there")
+    assert status == 2
+    assert said.rstrip().endswith("run first: dexrepro run --experiments more only=fade results=there")
+
+
+def test_the_report_gives_commands_that_find_the_experiment(mine: Command) -> None:
+    assert mine("run --experiments more only=fade workers=1 quiet=true")[0] == 0
+    assert mine("report --experiments more")[0] == 0
+    page = Path("results/report/chapterlab.html").read_text()
+    assert "dexrepro run --experiments more chapter=lab only=fade" in page
+    assert "dexrepro run chapter=lab" not in page
