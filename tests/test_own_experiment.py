@@ -44,6 +44,10 @@ def test_what_show_says_to_run_finds_the_experiment(mine: Command, name: str) ->
     assert mine(f"{run} workers=1 quiet=true")[0] == 0
 
 
+def test_show_says_where_a_claim_of_any_name_is_written(mine: Command) -> None:
+    assert "written in  more/lab/fade/claims.py:" in mine("show lab.01 --experiments more")[1]
+
+
 def test_missing_results_are_run_by_the_command_that_is_given(mine: Command) -> None:
     Path("there").mkdir()
     status, said = mine("check --experiments more chapter=lab only=fade results=there")

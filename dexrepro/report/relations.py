@@ -71,12 +71,12 @@ def laws(node: Any) -> list[Any]:
 
 @cache
 def definitions(folder: Path) -> dict[str, tuple[Path, int]]:
-    """Where each claim and erratum of a chapter's folder is written: id -> file, line."""
+    """Where each claim and erratum of a chapter's folder is written, of whatever name: id -> file, line."""
     found: dict[str, tuple[Path, int]] = {}
     for path in sorted(folder.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
                 name = node.args[0].value
-                if isinstance(name, str) and re.fullmatch(r"[CE]\d+\.\w+", name):
+                if isinstance(name, str):
                     found.setdefault(name, (path, node.lineno))
     return found
