@@ -58,6 +58,15 @@ def test_missing_results_are_run_by_the_command_that_is_given(mine: Command) -> 
     assert said.rstrip().endswith("run first: dexrepro run --experiments more only=fade results=there")
 
 
+def test_a_result_of_an_experiment_that_is_not_named_is_not_called_damaged(mine: Command) -> None:
+    assert mine("run --experiments more only=fade workers=1 quiet=true")[0] == 0
+    status, said = mine("diff results/chapterlab/fade results/chapterlab/fade")
+    assert status == 2
+    assert "name its folder, --experiments DIR" in said
+    assert "delete" not in said
+    assert mine("diff --experiments more results/chapterlab/fade results/chapterlab/fade")[0] == 0
+
+
 def test_the_report_gives_commands_that_find_the_experiment(mine: Command) -> None:
     assert mine("run --experiments more only=fade workers=1 quiet=true")[0] == 0
     assert mine("report --experiments more")[0] == 0

@@ -61,8 +61,12 @@ def _check_run(path: Path, run: Any) -> Experiment:
         if not re.fullmatch(CASE, case):
             raise _damaged(path, f"cases: {case[:40]!r} is no name of a case")
     number, name = run["chapter"], run["experiment"]
-    known = chapters.load(number).experiments if number in (*chapters.numbers(), chapters.OWN) else ()
-    for experiment in known:
+    if number not in (*chapters.numbers(), chapters.OWN):
+        raise InputError(
+            f"{path} is of '{name}' in a chapter '{number}', which is not here: if it is one of yours, name its "
+            "folder, --experiments DIR"
+        )
+    for experiment in chapters.load(number).experiments:
         if experiment.name == name:
             return experiment
     raise _damaged(path, f"there is no experiment '{name}' in a chapter '{number}'")
