@@ -98,11 +98,11 @@ def _global_options(arguments: list[str]) -> list[str]:
     logging.getLogger("dexrepro").setLevel(logging.INFO if options.log else logging.WARNING)
     for folder in options.experiments:
         existing_folder(folder, "--experiments")
-        known = chapters.numbers()
         chapters.add(folder)
-        if chapters.numbers() == known and not chapters.is_added(known[0]):
+        if not any(folder.resolve() in (path, path.parent) for path in chapters.folders().values()):
             raise InputError(
-                f"--experiments = {folder} adds nothing: an experiment is a folder in it with experiment.py"
+                f"--experiments = {folder} adds nothing: an experiment is a folder in it with experiment.py, and a "
+                "chapter whose name is taken needs another"
             )
     return rest
 

@@ -73,3 +73,15 @@ def test_the_report_gives_commands_that_find_the_experiment(mine: Command) -> No
     page = Path("results/report/chapterlab.html").read_text()
     assert "dexrepro run --experiments more chapter=lab only=fade" in page
     assert "dexrepro run chapter=lab" not in page
+
+
+def test_a_folder_may_be_named_twice_and_one_that_adds_nothing_is_refused(
+    mine: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert mine("list --experiments more --experiments more")[0] == 0
+    shutil.copytree("more/lab", "again/lab")
+    for name in ("again", "results"):
+        Path(name).mkdir(exist_ok=True)
+        status, said = mine(f"list --experiments more --experiments {name}")
+        assert status == 2
+        assert f"--experiments = {name} adds nothing" in said
