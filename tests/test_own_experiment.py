@@ -85,3 +85,10 @@ def test_a_folder_may_be_named_twice_and_one_that_adds_nothing_is_refused(
         status, said = mine(f"list --experiments more --experiments {name}")
         assert status == 2
         assert f"--experiments = {name} adds nothing" in said
+
+
+def test_a_chapter_is_listed_alone_with_its_claims(mine: Command) -> None:
+    status, said = mine("list --experiments more chapter=lab")
+    assert status == 0, said
+    assert "lab.01: the fast one decays more" in said
+    assert "Chapter 90" not in said

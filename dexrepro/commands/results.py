@@ -13,7 +13,7 @@ from dexrepro.keys import SELECTION
 
 
 @command(
-    "chapters, experiments, cases, figures, claims, errata", None,
+    "chapters, experiments, cases, figures, claims, errata", ("chapter",),
     option("--json", help="for programs, see docs/schemas"),
     option("--markdown", help="the claims of the book counted by verdict"),
     option("--schema", help="a JSON schema of all parameters, for an editor"),
@@ -24,6 +24,8 @@ def list_command(options: argparse.Namespace) -> int:
 
     if len(forms := [form for form in ("json", "markdown", "schema") if getattr(options, form)]) > 1:
         raise InputError(f"--{forms[0]} and --{forms[1]} exclude each other: give one of them")
+    if options.selection and (options.markdown or options.schema):
+        raise InputError("chapter= is for the list, not for --markdown or --schema")
     if options.markdown:
         from dexrepro import scoreboard
 
@@ -36,6 +38,11 @@ def list_command(options: argparse.Namespace) -> int:
         return OK
 
     data = listing()
+    if options.selection:
+        from dexrepro.selection import selected
+
+        numbers = selected(options.selection, "list").chapters
+        data = {"chapters": [chapter for chapter in data["chapters"] if chapter["chapter"] in numbers]}
     if options.json:
         print(json.dumps(data, indent=1))
         return OK
@@ -45,6 +52,11 @@ def list_command(options: argparse.Namespace) -> int:
             made = ", ".join([*experiment["figures"], *experiment["tables"]])
             say(f"  {experiment['name']}: {made}")
             say(f"    cases: {', '.join(experiment['cases'])}")
+        if options.selection:
+            for item in chapter["claims"]:
+                say(f"  {item['id']}: {item['statement']}")
+            for item in chapter["errata"]:
+                say(f"  {item['id']}: {item['kind']} in {item['equation']}: {item['summary']}")
         out.print(f"  {len(chapter['claims'])} claims, {len(chapter['errata'])} errata")
     return OK
 
