@@ -49,6 +49,8 @@ def selected(words: Iterable[str], command: str) -> Selection:
     numbers, _ = chapters_of([text for text in overrides if text.partition("=")[0] not in extra])
     if chapters.OWN in numbers and command in ("check", "crosscheck", "study"):
         raise InputError(f"chapter = {chapters.OWN} is not allowed for {command}: scenes of your own have no claims")
+    if "claim" in extra and "claim" in values:
+        numbers = _with_claim(values["claim"].strip("'\""), numbers)
     only = [*filter(None, listed(values.get("only", "")))]
     if only or "figure" in values:
         figure = values.get("figure", "").strip("'\"") or None
@@ -60,6 +62,15 @@ def selected(words: Iterable[str], command: str) -> Selection:
         positive_workers(values.get("workers")),
         {key: value for key, value in values.items() if key in extra},
     )
+
+
+def _with_claim(claim: str, numbers: list[str]) -> list[str]:
+    """The one of the chapters that has a claim; they as they are where none of them has it, which is said later."""
+    if found := [n for n in numbers if any(known.id == claim for known in chapters.load(n).claims)]:
+        return found
+    if found := [n for n in chapters.numbers() if any(known.id == claim for known in chapters.load(n).claims)]:
+        raise InputError(f"claim = {claim} is of chapter {found[0]}, not of {', '.join(numbers)}")
+    return numbers
 
 
 def listed(value: str) -> list[str]:

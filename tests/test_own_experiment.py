@@ -92,3 +92,12 @@ def test_a_chapter_is_listed_alone_with_its_claims(mine: Command) -> None:
     assert status == 0, said
     assert "lab.01: the fast one decays more" in said
     assert "Chapter 90" not in said
+
+
+def test_a_claim_says_of_which_chapter_it_is(mine: Command) -> None:
+    status, said = mine("study --experiments more claim=lab.01 samples=1 workers=1")
+    assert status == 0, said
+    assert "lab.01: holds in" in said
+    status, said = mine("study --experiments more chapter=90 claim=lab.01")
+    assert status == 2
+    assert "claim = lab.01 is of chapter lab, not of 90" in said
