@@ -250,6 +250,11 @@ def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> Non
             listed = re.sub(r"(\.\d+)(\..*)?$", "", key)
             if isinstance(value_at(shipped, listed), list):
                 raise InputError(f"'{key}' lies in a list, which is given whole: '{listed}=[…]'")
+            of_case = re.fullmatch(r"(\w+)\.(cases\.\w+)\.(.+)", key)
+            if of_case and {f"{of_case[1]}.{of_case[2]}", f"{of_case[1]}.{of_case[3]}"} <= {*keys}:
+                raise InputError(
+                    f"{of_case[1]}.{of_case[2]} does not set '{of_case[3]}' yet: add it, '+{override.input_line}'"
+                )
             raise InputError(f"unknown key '{key}': {nearest(key, keys)}")
 
 

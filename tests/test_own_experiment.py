@@ -101,3 +101,10 @@ def test_a_claim_says_of_which_chapter_it_is(mine: Command) -> None:
     status, said = mine("study --experiments more chapter=90 claim=lab.01")
     assert status == 2
     assert "claim = lab.01 is of chapter lab, not of 90" in said
+
+
+def test_a_value_that_a_case_does_not_set_yet_is_added_as_it_is_told(mine: Command) -> None:
+    status, said = mine("run only=decay decay.cases.plain.start=0.5 case=plain workers=1")
+    assert status == 2
+    assert "add it, '+decay.cases.plain.start=0.5'" in said
+    assert mine("run only=decay +decay.cases.plain.start=0.5 case=plain workers=1")[0] == 0
