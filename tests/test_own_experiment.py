@@ -108,3 +108,7 @@ def test_a_value_that_a_case_does_not_set_yet_is_added_as_it_is_told(mine: Comma
     assert status == 2
     assert "add it, '+decay.cases.plain.start=0.5'" in said
     assert mine("run only=decay +decay.cases.plain.start=0.5 case=plain workers=1")[0] == 0
+
+
+def test_without_a_film_to_renew_it_is_said_what_can_be_animated(mine: Command) -> None:
+    assert "a FOLDER or only=EXPERIMENT" in mine("render --experiments more chapter=lab")[1]

@@ -186,7 +186,10 @@ def render_command(options: argparse.Namespace) -> int:
             if experiment.name in only or (not only and outdated):
                 folders.append(folder)
     if not folders and not films:
-        raise InputError(f"no result in {results} has a film; run first: dexrepro run")
+        raise InputError(
+            f"no result in {results} is of an experiment that declares a film: run one, or name what to animate, "
+            "a FOLDER or only=EXPERIMENT"
+        )
     for folder in folders:
         say(animation.render(folder, values.get("case"), kind, allow))
     if not folders:
