@@ -1,9 +1,11 @@
 """One word chooses the engine, results know which it was, and the cross-check says what depends on it."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
+from conftest import ROOT
 
 from dexrepro import baselines, cli, crosscheck, study
 from dexrepro.baselines import Baseline
@@ -135,3 +137,16 @@ def test_the_shipped_table_is_of_all_experiments_with_simulated_arms_and_of_clai
     assert {(name, item.chapter) for name, item in shipped.items()} == simulated
     known = {claim.id for number in chapters.numbers() for claim in chapters.load(number).claims}
     assert {key for item in shipped.values() for key in item.claims} <= known
+
+
+def test_the_manual_names_the_experiments_and_cases_whose_numbers_differ():
+    page = (ROOT / "docs/how-to/engines.md").read_text("utf-8")
+    rows = re.findall(r"^\| (.*?) \| (.*?) \|", page.partition("| experiment | numbers")[2], re.MULTILINE)[1:]
+    shipped = crosscheck.stored(crosscheck.table(Path(), shipped=True))
+    differ = {item.experiment: item.metrics for item in shipped if item.metrics}
+    named = {name for experiments, _ in rows for name in re.findall(r"`(\w+)`", experiments)}
+    assert named == set(differ)
+    for experiments, numbers in rows:
+        names = [entry.name for name in re.findall(r"`(\w+)`", experiments) for entry in differ[name]]
+        for case in re.findall(r"`(\w+)`", numbers):
+            assert any(name.split(".")[1].startswith(case) for name in names), (experiments, case)
