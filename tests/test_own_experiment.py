@@ -92,6 +92,8 @@ def test_a_chapter_is_listed_alone_with_its_claims(mine: Command) -> None:
     assert status == 0, said
     assert "lab.01: the fast one decays more" in said
     assert "Chapter 90" not in said
+    assert mine("check --experiments more chapter=lab --update")[0] == 0
+    assert "lab.01 (reproduced): the fast one decays more" in mine("list --experiments more chapter=lab")[1]
 
 
 def test_a_claim_says_of_which_chapter_it_is(mine: Command) -> None:

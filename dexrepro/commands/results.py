@@ -53,12 +53,24 @@ def list_command(options: argparse.Namespace) -> int:
             say(f"  {experiment['name']}: {made}")
             say(f"    cases: {', '.join(experiment['cases'])}")
         if options.selection:
+            verdicts = _stored_verdicts(chapter["chapter"])
             for item in chapter["claims"]:
-                say(f"  {item['id']}: {item['statement']}")
+                known = ", ".join(filter(None, [verdicts[item["id"]], item["robustness"]]))
+                say(f"  {item['id']}{f' ({known})' if known else ''}: {item['statement']}")
             for item in chapter["errata"]:
                 say(f"  {item['id']}: {item['kind']} in {item['equation']}: {item['summary']}")
         out.print(f"  {len(chapter['claims'])} claims, {len(chapter['errata'])} errata")
     return OK
+
+
+def _stored_verdicts(number: str) -> dict[str, str]:
+    """Verdict of each claim of a chapter on the metrics that are stored, "" where there are none."""
+    from dexrepro import baselines, chapters
+    from dexrepro.claims import NOT_EVALUATED
+
+    metrics = baselines.stored_values(number)
+    found = {claim.id: claim.evaluate(metrics).verdict for claim in chapters.load(number).claims}
+    return {key: "" if verdict == NOT_EVALUATED else verdict for key, verdict in found.items()}
 
 
 @command(
