@@ -149,6 +149,8 @@ def test_the_own_experiment_is_run_checked_studied_drawn_and_reported(shell: She
     for command in block("sh", "--experiments lab").splitlines():
         done = shell(command)
         assert done.returncode == 0, done.stderr
+    (claim,) = json.loads((tmp_path / "results/chapterlab/push/claims.json").read_text())
+    assert (claim["verdict"], claim["severe"]) == ("reproduced", True)
     assert list((tmp_path / "results/chapterlab/push/figures").glob("fig_lab_*.png"))
     assert "lab.01" in json.loads((tmp_path / "lab/push/baseline.json").read_text())["claims"]
     assert "push" in (tmp_path / "results/report/chapterlab.html").read_text()
