@@ -172,3 +172,17 @@ def test_a_folder_that_cannot_be_copied_is_named_by_its_first_file(
 def test_check_of_one_experiment_needs_no_other(toy: Path) -> None:
     assert cli.main(["check", "chapter=90"]) == 2, "nothing has been run"
     assert cli.main(["check", "only=needs_more"]) == 0, "it is skipped here, and decay was not asked for"
+
+
+def test_diff_names_the_other_result_and_shortens_what_is_long(toy: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    long = f"decay.gains=[{','.join(map(str, range(1, 99)))}]"
+    for more in ("{rate: 3}",), ("{rate: 4}", long):
+        words = [f"+decay.cases.book={more[0]}", *more[1:]]
+        assert cli.main(["run", "only=decay", "case=book", *words, "workers=1", "quiet=true"]) == 0
+    first, second = sorted(Path("results/runs").glob("decay-*"), key=lambda path: path.stat().st_mtime)
+    capfd.readouterr()
+    assert cli.main(["diff", str(second), str(first)]) == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert f"config   cases.book.rate=4 ({first}: 3)" in lines, "a case may be called book"
+    (gains,) = (line for line in lines if line.startswith("config   gains=[1, 2, 3,"))
+    assert gains.endswith(f" ... ({first}: [1, 2])")

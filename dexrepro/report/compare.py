@@ -22,6 +22,11 @@ from dexrepro.report.verdicts import changes
 from dexrepro.storage import read_json, read_yaml
 
 PANELS = 6
+LONGEST = 120  # letters of a value, such as all that a case sets
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 4]} ..."
 
 
 def compare(a: Path, b: Path) -> Iterator[str]:
@@ -30,10 +35,9 @@ def compare(a: Path, b: Path) -> Iterator[str]:
     Raises InputError where a folder holds no result, or a damaged one.
     """
     _check(a, b)
-    yield from (
-        f"config   {line.replace('book', str(b))}"
-        for line in differences(*(read_yaml(folder / "config.yaml") for folder in (a, b)))
-    )
+    for line in differences(*(read_yaml(folder / "config.yaml") for folder in (a, b))):
+        mine, mark, theirs = line.rpartition(" (book: ")
+        yield f"config   {_short(mine)} ({b}: {_short(theirs[:-1])})" if mark else f"config   {line}"
     for name, mine, theirs in _differing(*(read_json(folder / "metrics.json") for folder in (a, b))):
         yield f"metric   {name}: {mine} | {theirs}"
     verdicts = ({c["id"]: c["verdict"] for c in read_json(folder / "claims.json")} for folder in (a, b))
