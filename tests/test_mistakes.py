@@ -186,3 +186,11 @@ def test_diff_names_the_other_result_and_shortens_what_is_long(toy: Path, capfd:
     assert f"config   cases.book.rate=4 ({first}: 3)" in lines, "a case may be called book"
     (gains,) = (line for line in lines if line.startswith("config   gains=[1, 2, 3,"))
     assert gains.endswith(f" ... ({first}: [1, 2])")
+
+
+def test_drawing_a_result_that_is_in_no_figure_says_so(
+    result: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("dexrepro.report.export.export", lambda *_: [])
+    assert cli.main(["draw", str(RESULT), "style=dark"]) == 0
+    assert f"{RESULT}: none of its figures shows the cases that were run" in capfd.readouterr().out

@@ -137,6 +137,8 @@ def draw_command(options: argparse.Namespace) -> int:
         else:
             for path in made:
                 say(path)
+            if not made:
+                say(f"{folder}: none of its figures shows the cases that were run")
     return status
 
 
