@@ -17,6 +17,7 @@ from conftest import ROOT, Shell
 from test_cli import SHORT
 
 from dexrepro import chapters, scoreboard, timings
+from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import Measured, check
 
 README = (ROOT / "README.md").read_text()
@@ -186,6 +187,22 @@ def test_every_command_is_understood(shell: Shell, command: str) -> None:
     expected = next((status for start, status in needs_results.items() if command.startswith(start)), 0)
     assert done.returncode == expected, done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_parameters_of_an_example_are_those_that_its_figure_shows() -> None:
+    def shown(*words: str) -> dict[str, object]:
+        composed = compose_chapter("2", words)
+        cases = experiment_cases(composed, "movement_estimation")
+        periods = np.atleast_1d(composed["movement_estimation"]["period"])
+        in_figure = {n: v for n, v in cases.items() if v["period"] in periods and n.startswith(("sigma", "k"))}
+        assert all(name.startswith("sigma") for name in in_figure), "the figure draws whatever has one of the periods"
+        return in_figure
+
+    begins = "dexrepro run figure=2.7 "
+    words = [c.removeprefix(begins).replace("'", "") for c in COMMANDS if c.startswith(f"{begins}'") or "2.7 mov" in c]
+    assert len(words) >= 3
+    for word in words:
+        assert shown(word) != shown(), f"{word} leaves Fig. 2.7 as it is"
 
 
 SCALING = [line.partition(" #")[0].strip() for line in block("sh", "submitit_slurm").splitlines()]
