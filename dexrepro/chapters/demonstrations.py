@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from dexrepro.arrays import Array
-from dexrepro.errors import InputError
+from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config
 from dexrepro.primitives.recorded import Format, demonstrations, matching, read_corners
 
@@ -21,6 +22,14 @@ def recorded(files: str | Sequence[str], count: int, samples: int, config: Confi
         return [100 * path for path in demonstrations(files, count, samples, style, axes, "cm")]
     except ValueError as error:
         raise InputError(f"demonstrations: {error}") from error
+
+
+def by_name(files: Mapping[Any, Any] | None, known: Iterable[Any]) -> dict[str, Any]:
+    """A user's files by what they show. Raises InputError where an experiment has no demonstration of that name."""
+    given, names = {str(name): value for name, value in (files or {}).items()}, [str(name) for name in known]
+    if unknown := [name for name in given if name not in names]:
+        raise InputError(f"demonstrations: there is none of '{unknown[0]}': {nearest(unknown[0], names)}")
+    return given
 
 
 def corners(files: str | Sequence[str], config: Config, key: str) -> list[Array]:

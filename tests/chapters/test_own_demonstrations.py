@@ -12,6 +12,7 @@ from cases import case, rng
 from dexrepro.case import generator
 from dexrepro.chapters.chapter5 import crossing, letters
 from dexrepro.chapters.chapter5.obstacle_crossing import experiment as obstacle_crossing
+from dexrepro.chapters.chapter5.style_transformation import experiment as style_transformation
 from dexrepro.chapters.chapter6.planar_skill import experiment as planar_skill
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
@@ -144,6 +145,22 @@ def test_a_reaction_that_cannot_be_used_gets_one_sentence(name: str, goal: tuple
     config = configured("7", "reactive_learning", "frozen", f"reactions={{{name}: left.csv}}")
     with pytest.raises(InputError, match=sentence):
         reactive_learning.taught(config)
+
+
+@pytest.mark.parametrize(
+    ("simulate", "experiment", "given", "sentence"),
+    [
+        (style_transformation.simulate, "style_transformation", "q", "'q': there are: a, w"),
+        (obstacle_crossing.simulate, "obstacle_crossing", "4", "'4': there are: 1, 2, 3"),
+        (obstacle_crossing.simulate, "obstacle_crossing", "one", "'one': there are: 1, 2, 3"),
+    ],
+)
+def test_a_demonstration_that_nothing_learns_from_is_refused(
+    simulate: Any, experiment: str, given: str, sentence: str
+) -> None:
+    config = configured("5", experiment, "default", f"demonstrations={{{given}: over.csv}}")
+    with pytest.raises(InputError, match=f"demonstrations: there is none of {sentence}"):
+        simulate(config, rng(experiment))
 
 
 def write_drawing(turn: float = 0.0) -> None:

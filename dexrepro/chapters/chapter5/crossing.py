@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from dexrepro.chapters.chapter5 import letters
-from dexrepro.chapters.demonstrations import recorded
+from dexrepro.chapters.demonstrations import by_name, recorded
 from dexrepro.experiment import Config
 from dexrepro.humans.crossing import via_points
 from dexrepro.humans.handwriting import hand_path, smoothed
@@ -21,9 +21,9 @@ def repetitions(blocks: int, config: Config, rng: np.random.Generator) -> list[A
     """Demonstrated paths (N, 3) [cm] over a number of blocks: the user's, or else synthetic ones."""
     hand, shape = config.hand, config.demonstration
     time = np.linspace(0.0, config.dmp.duration, config.dmp.samples)
-    own = {int(number): files for number, files in (config.get("demonstrations") or {}).items()}
-    if blocks in own:
-        paths = recorded(own[blocks], shape.count, len(time), config, axes=3)
+    own = by_name(config.get("demonstrations"), HEIGHTS)
+    if str(blocks) in own:
+        paths = recorded(own[str(blocks)], shape.count, len(time), config, axes=3)
         return [(1 + config.perturbation) * smoothed(time, path, hand.cutoff) for path in paths]
     points = via_points(blocks, shape.clearance, shape.plateau) * (1 + config.perturbation)
     points[-1, 1:] += shape.end_offset

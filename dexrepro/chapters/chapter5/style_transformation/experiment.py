@@ -10,6 +10,7 @@ import pandas as pd
 
 from dexrepro.arrays import Rng
 from dexrepro.chapters.chapter5 import letters
+from dexrepro.chapters.demonstrations import by_name
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms_distance
 from dexrepro.primitives import DMP, Demonstration, ExtendedKernels, extend, extend_styles, interpolate, original
@@ -54,8 +55,8 @@ def simulate(config: Config, rng: Rng) -> Recording:
 
 
 def _demonstrations(config: Config, hand: np.random.Generator) -> dict[str, Demonstration]:
-    own = config.demonstrations or {}
     names = (config.hand.base, *config.hand.targets)
+    own = by_name(config.demonstrations, names)
     return {name: letters.demonstrations(name, own.get(name), 1, config, hand)[0] for name in names}
 
 
