@@ -18,6 +18,7 @@ from dexrepro.disk_cache import cached
 from dexrepro.errors import InputError, nearest, one_line, refused
 from dexrepro.interpolation import inherited, names_of, resolved
 from dexrepro.physics.engine import ENGINES, is_installed
+from dexrepro.storage import read_yaml
 
 if TYPE_CHECKING:  # Hydra is imported where it is needed: it takes as long as a whole command may
     from hydra.core.override_parser.types import Override
@@ -143,6 +144,7 @@ def read_config(path: Path) -> dict[str, Any]:
     from omegaconf.errors import OmegaConfBaseException
 
     try:
+        read_yaml(path)  # refuses aliases that explode before OmegaConf writes them out
         content: Any = OmegaConf.to_container(OmegaConf.create(path.read_text("utf-8")), resolve=False)
     except AssertionError:
         content = None

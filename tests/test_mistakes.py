@@ -65,6 +65,11 @@ def test_null_still_turns_a_number_off_that_is_no_quantity(toy: Path) -> None:
         (b"\tonly: decay\n", "bad.yaml is no YAML file"),
         (b"# mine\nonly: caf\xe9\n", "bad.yaml: line 2 is not UTF-8; save the file as UTF-8"),
         (b"- a\n", "bad.yaml holds no keys"),
+        (
+            b"a0: &a0 [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]\n"
+            + b"".join(b"a%d: &a%d [%s]\n" % (n, n, b", ".join([b"*a%d" % (n - 1)] * 10)) for n in range(1, 9)),
+            "bad.yaml is no YAML file: it is nested too deeply or stands for more than a million values",
+        ),
     ],
 )
 def test_a_file_of_the_user_that_is_no_yaml_is_named(toy: Path, content: bytes, sentence: str) -> None:
