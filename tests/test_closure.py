@@ -40,7 +40,7 @@ def edited(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[str, st
         for path in file(module).parent.iterdir():
             if path.suffix == ".yaml":
                 (tmp_path / path.name).write_bytes(path.read_bytes())
-        monkeypatch.setattr(closure, "kept", lambda _, make: make()[0])
+        monkeypatch.setattr(closure, "cached", lambda _, make: make()[0])
         monkeypatch.setattr(closure, "_file", lambda name: copy if name == module else file(name))
 
     return edit
