@@ -62,13 +62,16 @@ CLAIMS = (
         "C1.24a",
         "The proposed law reaches the desired force fastest.",
         _least("settling", "proposed"),
-        control=less(".t1_passive_tuned.settling", ".t1_proposed.settling"),
+        control=_least("settling", "integral"),
         printed=less(".t1_printed.settling", ".t1_passive.settling"),
-        note="Into a band of 10 %; the control is the passive impedance with the best of twelve dampings. The first "
-        "crossing of 95 % comes a little later than with the fixed distance ({.t1_proposed.rise:.2f} and "
-        "{.t1_fixed.rise:.2f} s, {.t1_passive.rise:.2f} s with passive impedance): one speed limit for all. The fixed "
-        "distance leaves the band again and again; where nothing in the object varies it settles after "
-        "{.t1_fixed_calm.settling:.2f} s.",
+        readings={"the first crossing of 95 %": _least("rise", "proposed")},
+        searched="what counts as reached (to stay within 10 %, the first crossing of 95 %)",
+        note="Into a band of 10 %, where the control, the law without its weights, is as fast ({.t1_integral.settling:"
+        ".2f} against {.t1_proposed.settling:.2f} s) and passive impedance with the best of twelve dampings takes "
+        "{.t1_passive_tuned.settling:.2f} s. The first crossing of 95 % comes a little later than with the fixed "
+        "distance ({.t1_proposed.rise:.2f} and {.t1_fixed.rise:.2f} s, {.t1_passive.rise:.2f} s with passive "
+        "impedance): one speed limit for all. The fixed distance leaves the band again and again; where nothing in the "
+        "object varies it settles after {.t1_fixed_calm.settling:.2f} s.",
     ),
     fig_1_18(
         "C1.24b",
