@@ -63,6 +63,7 @@ CLAIMS = (
         where="1.5.2.1",
         note="The tools' axes are opposite to within {.adjustable.facing:.2f} deg; the line between the "
         "hands lags by up to {.adjustable.pointing:.1f} deg because the field follows DFR's rotation "
-        "slowly. The control keeps the orientation it starts with.",
+        "slowly. The control keeps the orientation it starts with. With a smaller compliance of the field, which is "
+        "not printed, it often lags by more than the bound (study).",
     ),
 )
