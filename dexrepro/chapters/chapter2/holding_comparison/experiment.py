@@ -43,7 +43,7 @@ def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     result: Metrics = {}
     for law, cases in {
         "lead": ("s8", "s14"),
-        "integral_lead": ("tuned_force_integral_1", "tuned_force_integral_2"),
+        "integral_lead": ("integral_1", "integral_2"),
     }.items():
         for trajectory, (case, rival) in enumerate(zip(cases, ("s4", "s10")), start=1):
             own, other = (metrics.get(name, {}).get("rmse") for name in (case, rival))

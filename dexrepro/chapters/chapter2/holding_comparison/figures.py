@@ -118,6 +118,7 @@ def _draw_histories(recordings: Recordings, metrics: AllMetrics, config: Config)
     )
 
 
+CONTROLS = ("integral_1", "integral_2")  # tuned more finely than the search that the tuned laws share
 ESTIMATING = ("s6", "s8", "s12", "s14", "s16", "s18")  # with the regulation (2.8)
 SETTINGS = {  # NoIm and Im on either trajectory
     1: {
@@ -136,8 +137,8 @@ SETTINGS = {  # NoIm and Im on either trajectory
 
 
 def _draw_settings(metrics: AllMetrics, config: Config) -> Drawing:
-
-    tuned = [case for case, its in config.cases.items() if its.law or gains(its, config) == "tuned"]
+    ours = {case: its for case, its in config.cases.items() if case not in CONTROLS}
+    tuned = [case for case, its in ours.items() if its.law or gains(its, config) == "tuned"]
     figure, (*panels, right) = style.subplots(1, 3, height=2.9, width_ratios=(5, 3, 3.4))
     counts = []
     for axes, letter, (trajectory, settings) in zip(panels, "ab", SETTINGS.items()):
