@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -46,11 +46,12 @@ def ellipse(config: Config, duration: float) -> Sampled:
     )
 
 
-def scene(config: Config) -> World:
-    """The arm at rest with its tip at the start, under gravity and the force field at its tip."""
+def scene(config: Config, start: Sequence[float] | None = None) -> World:
+    """The arm at rest with its tip at ``start`` (None: the task's), under gravity and the force field at its tip."""
+    start = config.task.start if start is None else start
     world = World(step=config.step, gravity=(0.0, -config.arm.gravity, 0.0), perturbation=config.perturbation)
     arm = planar(config.arm.lengths, config.arm.masses, config.arm.inertias, radius=0.03)
-    world.add_arm("arm", arm, position=TwoLink(config.arm.lengths).inverse(config.task.start))
+    world.add_arm("arm", arm, position=TwoLink(config.arm.lengths).inverse(start))
     x, y = config.task.force
     world.add(Push("arm", lambda time: (x, y, 0.0), name="field"))
     return world
@@ -119,7 +120,7 @@ def simulate(config: Config) -> Recording:
     status = "finished"
     for number, reference in _segments(config, law):
         pilot = Pilot(law, arm, reference, round(config.task.period / config.step))
-        with scene(config) as world:
+        with scene(config, config.task.ellipse_start if number >= ELLIPSE else None) as world:
             part = world.run(
                 reference.duration,
                 {"arm": pilot},
