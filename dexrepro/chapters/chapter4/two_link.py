@@ -135,7 +135,7 @@ def simulate(config: Config) -> Recording:
             status = part.status
             break
         if pilot.network is not None and law.learning and number < ELLIPSE:
-            pilot.network.reset(pilot.mean_weights)
+            pilot.network.reset(pilot.mean_weights if config.carried == "weights" else None)
     recording = _joined(parts, config)
     recording.status = status
     _add_weights(recording, parts, weights, law, config)

@@ -9,9 +9,10 @@ from dexrepro.chapters.chapter4 import two_link
 from dexrepro.chapters.chapter4.measures import between, tracking
 from dexrepro.chapters.chapter4.two_link import ELLIPSE, FROZEN, large
 from dexrepro.control.contract import memory
-from dexrepro.experiment import Config, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 
 RATE = 50.0
+STROKES = {2: "alone45", 3: "alone90", 4: "alone135"}  # by their number, the case in which each is learned alone
 
 scene = two_link.scene
 stage = two_link.stage
@@ -79,3 +80,30 @@ def _strokes(recording: Recording) -> Metrics:
             metrics[f"stroke{number + 1}_nodes"] = last.shape[1]
             metrics[f"stroke{number + 1}_large_weights"] = large(last.to_numpy()[0])
     return metrics
+
+
+def summarise(metrics: AllMetrics, config: Config) -> Metrics:
+    """What share of what reuse gains the nodes alone give, without their weights.
+
+    nodes_share_strokes: of the sum of the errors of strokes two to four, against those learned alone;
+    nodes_share_ellipse: of the ellipse's error, against the ellipse learned from nothing.
+    """
+    alone = {f"stroke{n}_rmse_mm": (case, "stroke1_rmse_mm") for n, case in STROKES.items()}
+    found = {
+        "nodes_share_strokes": _share(metrics, alone),
+        "nodes_share_ellipse": _share(metrics, {"rmse_mm": ("zero20", "rmse_mm")}),
+    }
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _share(metrics: AllMetrics, rivals: dict[str, tuple[str, str]]) -> float | None:
+    """Gain of the nodes over that of all; rivals: (case, metric) without reuse, by the metric with it."""
+    sums = [0.0, 0.0, 0.0]
+    for name, rival in rivals.items():
+        for k, (case, metric) in enumerate((rival, ("nodes20", name), ("broad20", name))):
+            value = metrics.get(case, {}).get(metric)
+            if value is None:
+                return None
+            sums[k] += value
+    without, nodes, whole = sums
+    return (without - nodes) / (without - whole) if without != whole else None
