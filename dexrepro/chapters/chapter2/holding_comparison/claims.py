@@ -161,6 +161,7 @@ CLAIMS = (
         "The advantage of the proposed law is more evident where the partner moves along the holding line (Traj. 1).",
         greater(".lead_1", ".lead_2"),
         control=greater(".integral_lead_1", ".integral_lead_2"),
+        credits="the proposed law",
         where="2.4.2.2",
         note="By how much passive impedance errs more, with (2.8): {.lead_1:.3f} N on Traj. 1, "
         "{.lead_2:.3f} N on Traj. 2, where it errs less. The control is an integral force law with a gain tuned on "
