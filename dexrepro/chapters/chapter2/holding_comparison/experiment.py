@@ -38,14 +38,16 @@ def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     """What the regulation gains in groups 2 and 3, off minus on [N], mean over the laws both groups have.
 
     lead_1, lead_2: by how much the passive impedance errs more than the proposed law on either trajectory [N];
-    integral_lead_1, integral_lead_2: the same of an integral force law in the proposed law's place.
+    integral_lead_1, integral_lead_2: the same of an integral force law in the proposed law's place; force_lead_1,
+    force_lead_2: by how much a force controller errs more, both with tuned gains.
     """
     result: Metrics = {}
-    for law, cases in {
-        "lead": ("s8", "s14"),
-        "integral_lead": ("integral_1", "integral_2"),
+    for law, duels in {
+        "lead": (("s8", "s4"), ("s14", "s10")),
+        "integral_lead": (("integral_1", "s4"), ("integral_2", "s10")),
+        "force_lead": (("tuned_impedance_1", "tuned_force_1"), ("tuned_impedance_2", "tuned_force_2")),
     }.items():
-        for trajectory, (case, rival) in enumerate(zip(cases, ("s4", "s10")), start=1):
+        for trajectory, (case, rival) in enumerate(duels, start=1):
             own, other = (metrics.get(name, {}).get("rmse") for name in (case, rival))
             if own is not None and other is not None:
                 result[f"{law}_{trajectory}"] = other - own
