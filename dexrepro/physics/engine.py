@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING, Protocol, cast
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 if TYPE_CHECKING:
     import numpy as np
@@ -120,3 +120,18 @@ def engine() -> Engine:
     """The module of the engine last chosen, else of the default."""
     word = _chosen[0] if _chosen else default()
     return cast(Engine, importlib.import_module(f"dexrepro.physics.engines.{word}"))
+
+
+@contextmanager
+def unseen() -> Iterator[None]:
+    """Meanwhile pictures for people are black, which spares a simulation that nobody looks at a tenth to a third of its
+    time; what a camera of the robot's sees is drawn as ever."""
+    import numpy as np
+
+    scene: Any = engine().scene
+    drawn = scene.photograph
+    scene.photograph = lambda scene, camera, size: np.zeros((size[1], size[0], 3), np.uint8)
+    try:
+        yield
+    finally:
+        scene.photograph = drawn

@@ -1,7 +1,7 @@
 """A step of a book's case beside the engine's own step, both in the same run: what the laws and the loop cost.
 
 Run by ``make bench``. The engine's share is the CPU time inside ``advance``; what is printed is microseconds a step of
-both, and their ratio. Pictures that a case takes at its start count to its steps, modules that it imports do not.
+both, and their ratio. As in a study, no pictures are drawn; modules that a case imports do not count.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import pytest
 from dexrepro import chapters
 from dexrepro.case import live, run
 from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.physics.engine import unseen
 from dexrepro.physics.world import World
 
 CASES = (
@@ -48,7 +49,8 @@ def test_a_cases_step_beside_the_engines(
     found = chapters.load(chapter).experiment(experiment)
     assert found.simulation  # imported before the clock starts: the first case would pay for all
     start = time.process_time()
-    run(found, config, 0)
+    with unseen():
+        run(found, config, 0)
     whole = time.process_time() - start
     with capsys.disabled():
         one, engine = 1e6 * whole / len(spent), 1e6 * sum(spent) / len(spent)

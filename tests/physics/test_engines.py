@@ -294,3 +294,15 @@ def test_what_diverges_is_seen_to_diverge(tmp_path, monkeypatch):
         run = world.run(2.0, {"arm": lambda sense: 1e4 * sense.velocity + 1.0}, on_divergence="stop")
     assert run.status.startswith("diverged at")
     assert not list(tmp_path.iterdir())
+
+
+def test_unseen_pictures_are_black_and_what_the_robot_sees_is_drawn():
+    from dexrepro.physics.rendering import Overhead
+
+    with World() as world:
+        world.add_box("box", (0.4, 0.4, 0.2), (0.5, 0, 0.1), colour=(0.9, 0.2, 0.1, 1.0))
+        with engine.unseen():
+            assert world.render(size=(60, 40)).shape == (40, 60, 3)
+            assert not world.render(size=(60, 40)).any()
+            assert world.look_down(Overhead((0.5, 0.0, 1.5), size=(60, 40)))[0].any()
+        assert world.render(size=(60, 40)).any()
