@@ -84,12 +84,18 @@ def cases_of(chapter: str, experiment: str, wanted: str) -> Cases:
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the margin, in a summary
 
 
-@cache
 def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
-    """Parameters that an experiment uses, its own and the shared ones it refers to, with a range or words to draw from.
+    """Parameters that a study of an experiment varies: chosen ones, its own and the shared ones that it refers to.
 
-    A list of numbers is varied element by element, under the keys ``list.0``, ``list.1``, ...
+    A list of numbers is varied element by element, under the keys ``list.0``, ``list.1``, ... What is derived, as the
+    best gain of a search, is not: a rival with any other gain is a weaker rival.
     """
+    return {key: origin for key, origin in ranged(chapter, experiment).items() if origin.kind == "chosen"}
+
+
+@cache
+def ranged(chapter: str, experiment: str) -> dict[str, Provenance]:
+    """Parameters that an experiment uses with a range or words to draw from, each of which has its own dimension."""
     composed = compose_chapter(chapter)
     referred = _references(composed, composed[experiment])
     found = {}
@@ -125,12 +131,14 @@ def _points(experiment: str, dimensions: int) -> Array:
 def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float | str], dict[str, Any]]:
     """Sample number ``index``: the values drawn, and under them the experiment's block with all its ``cases``."""
     composed = compose_chapter(chapter)
-    varied = parameters(chapter, experiment)
+    varied = ranged(chapter, experiment)
     numbers = {key: origin for key, origin in varied.items() if not origin.drawn}
     words = {key: origin for key, origin in varied.items() if origin.drawn}
     point = _points(experiment, len(numbers) + 1)[index]
     values: dict[str, float | str] = {}
     for share, (key, origin) in zip(point, numbers.items(), strict=False):
+        if origin.kind != "chosen":
+            continue
         whole = isinstance(value_at(composed, key), int)
         values[key] = within(float(share), origin.low or 0.0, origin.high or 0.0, whole)
         set_value(composed, key, values[key])

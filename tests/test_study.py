@@ -89,11 +89,26 @@ def test_points_cover_the_ranges_evenly_and_lists_are_drawn_element_by_element(
     assert np.all(np.floor(16 * share) == np.arange(16)), "one in every sixteenth"
     origins = {"decay.start": origin, "decay.gains": replace(origin, low=1.0, high=9.0)}
     monkeypatch.setattr(study, "provenance", lambda chapter: origins)
-    study.parameters.cache_clear()
+    study.ranged.cache_clear()
     assert set(study.parameters("90", "decay")) == {"decay.start", "decay.gains.0", "decay.gains.1"}
     values, block = study.draw("90", "decay", 5)
     assert block["gains"] == [values["decay.gains.0"], values["decay.gains.1"]]
-    study.parameters.cache_clear()
+    study.ranged.cache_clear()
+
+
+def test_the_best_of_a_search_is_not_drawn_and_what_is_drawn_beside_it_stays(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    start = study.parameters("90", "decay")["decay.start"]
+    drawn = []
+    for kind in ("chosen", "derived"):
+        origins = {"decay.gains": replace(start, low=1.0, high=9.0, kind=kind), "decay.start": start}
+        monkeypatch.setattr(study, "provenance", lambda chapter, origins=origins: origins)
+        study.ranged.cache_clear()
+        drawn.append(study.draw("90", "decay", 5)[0])
+    study.ranged.cache_clear()
+    assert drawn[0].keys() - drawn[1].keys() == {"decay.gains.0", "decay.gains.1"}
+    assert drawn[0].items() >= drawn[1].items()
 
 
 def test_words_are_drawn_evenly_and_leave_the_numbers_alone(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -104,12 +119,12 @@ def test_words_are_drawn_evenly_and_leave_the_numbers_alone(folder: Path, monkey
     composed["decay"]["integrator"] = "exact"
     monkeypatch.setattr(study, "compose_chapter", lambda chapter: copy.deepcopy(composed))
     monkeypatch.setattr(study, "provenance", lambda chapter: {"decay.start": start, "decay.integrator": words})
-    study.parameters.cache_clear()
+    study.ranged.cache_clear()
     drawn = [study.draw("90", "decay", index) for index in range(16)]
     assert [block["integrator"] for _, block in drawn] == [values["decay.integrator"] for values, _ in drawn]
     assert sorted(values.pop("decay.integrator") for values, _ in drawn) == ["euler"] * 8 + ["exact"] * 8
     assert [values for values, _ in drawn] == before
-    study.parameters.cache_clear()
+    study.ranged.cache_clear()
 
 
 def test_a_reworded_claim_costs_no_simulation(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -217,7 +232,7 @@ def test_shipped_samples_count_and_those_of_another_configuration_do_not(
     study.run("90", "decay", 5, RESULTS)
     assert evaluated == [3, 4]
     narrower = {key: replace(origin, high=1.0) for key, origin in study.parameters("90", "decay").items()}
-    monkeypatch.setattr(study, "parameters", lambda *_: narrower)
+    monkeypatch.setattr(study, "ranged", lambda *_: narrower)
     assert read_json(study.run("90", "decay", 2, Path("other")))["samples"] == 2
     assert evaluated[2:] == [0, 1]
 
@@ -283,7 +298,7 @@ def test_a_study_never_becomes_smaller(folder: Path, monkeypatch: pytest.MonkeyP
     lines, narrower = (RESULTS / "studies/decay.jsonl").read_text(), study.parameters("90", "decay")
     narrower = {key: replace(origin, high=1.0) for key, origin in narrower.items()}
     monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))  # other processes do not know of this:
-    monkeypatch.setattr(study, "parameters", lambda *_: narrower)
+    monkeypatch.setattr(study, "ranged", lambda *_: narrower)
     with pytest.raises(InputError, match=r"samples = 2 is not allowed: .* holds 3 samples of another configuration"):
         study.run("90", "decay", 2, RESULTS, workers=1)
     assert study.run("90", "decay", 3, RESULTS, workers=1, hours=1e-9) == path  # no time for any

@@ -79,7 +79,7 @@ def test_reference_is_continuous_and_ends_at_the_target():
 
 
 def test_push_is_a_trapezoid():
-    push = Config.of({"force": [0, 30, 0], "start": 1.0, "duration": 1.5, "ramp": 0.1})
+    push = Config.of({"force": 30, "direction": [0, 1, 0], "start": 1.0, "duration": 1.5, "ramp": 0.1})
     force = external_push.trapezoid(push)
     assert [force(t)[1] for t in (0.9, 1.05, 1.5, 2.45, 2.6)] == pytest.approx([0, 15, 30, 15, 0])
 

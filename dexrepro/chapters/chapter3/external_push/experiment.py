@@ -34,8 +34,7 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
     shown = cutaway(world, recording, config)
     elbow = joint_frames(gripper_arm(config.gripper), recording[f"{ARM}.position"])[:, ELBOW]
     force = np.stack([recording[f"push.{axis}"] for axis in "xyz"], axis=1)
-    size = np.linalg.norm(config.push.force)
-    forearm = elbow[:, :3, 3] + elbow[:, :3, :3] @ np.array(config.push.place) - 0.17 * force / size
+    forearm = elbow[:, :3, 3] + elbow[:, :3, :3] @ np.array(config.push.place) - 0.17 * force / config.push.force
     world.add_box("push", (0.025, 0.2, 0.025), (0, 0, 0), colour=(0.0, 0.45, 0.7, 1.0), collides=False)
     shown.series["push.pose"] = np.where(np.linalg.norm(force, axis=1, keepdims=True) > 0, forearm, -9.0)
     return shown
@@ -43,11 +42,11 @@ def stage(world: World, recording: Recording, config: Config) -> Recording:
 
 def trapezoid(push: Config) -> Callable[[float], tuple[float, ...]]:
     """Force (3,) [N] at a time [s]: ramp up, hold, ramp down."""
-    zero = (0.0, 0.0, 0.0)
+    zero, full = (0.0, 0.0, 0.0), [push.force * share for share in push.direction]
 
     def force(time: float) -> tuple[float, ...]:
         share = min((time - push.start) / push.ramp, (push.start + push.duration - time) / push.ramp, 1.0)
-        return tuple(share * f for f in push.force) if share > 0 else zero
+        return tuple(share * f for f in full) if share > 0 else zero
 
     return force
 

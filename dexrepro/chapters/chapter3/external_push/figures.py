@@ -22,7 +22,7 @@ FIGURES = {
     "3.11": Figure(
         "Force on the forearm, the external torque of the three joints it loads most (pale and wide: true; thin: "
         "observed; two of the true ones coincide), with the nominal model and with an exact one, and Dis_R, during a "
-        "push of {.push.force.1:g} N along y in reach 1. Simulated; the arm may touch box and lid, and "
+        "push of {.push.force:g} N along y in reach 1. Simulated; the arm may touch box and lid, and "
         "does not. The book plots force, torque and distance.",
         "Force, observed and true torques and the distance to the opening over time during a push, for two models.",
     ),
@@ -132,7 +132,7 @@ def _draw_effect(recordings: Recordings, metrics: Any, config: Config) -> Drawin
     peak, tip = 1e3 * found["rcm_peak"], 1e3 * found["error_peak"]
     return style.title(
         figure,
-        f"{np.abs(push.force).max():g} N move the arm {peak:.1f} mm off the centre and the end point by {tip:.1f} mm",
+        f"{push.force:g} N move the arm {peak:.1f} mm off the centre and the end point by {tip:.1f} mm",
     )
 
 
@@ -150,10 +150,11 @@ def _draw_sweep(table: pd.DataFrame) -> Drawing:
 def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dict[str, pd.DataFrame]:
     names = ("observer_error", "observer_change_error", "observer_lag", "rcm_rest", "rcm_peak", "rcm_final",
              "rcm_recovery_time", "error_peak", "limit_margin", "finished")  # fmt: skip
+    along = {case: values.push.force * values.push.direction[1] for case, values in config.cases.items()}
     rows = [
-        {"case": case, "push y [N]": config.cases[case].push.force[1], **{name: values.get(name) for name in names}}
+        {"case": case, "push y [N]": along[case], **{name: values.get(name) for name in names}}
         for case, values in metrics.items()
-        if case in config.cases
+        if case in along
     ]
     tables = {"T3.B": headed(rows)}
     if "exact_plus" in recordings:
