@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from dexrepro import chapters
-from dexrepro.config import compose_chapter, experiment_cases, leaves, resolved_block
+from dexrepro import chapters, study
+from dexrepro.checks import is_number, leaves, value_at
+from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.provenance import commented_leaves, parse_provenance
 
 ALIASES = {"control_period": ("dt",), "step": ("dt",), "speed_limit": ("speed",)}
@@ -49,6 +50,26 @@ def test_a_value_that_rivals_share_reaches_all_of_them_when_it_is_set(number: st
             reached |= {f"{case}.{path}": new[path] == value for path in copies}
         if len(set(reached.values())) > 1:
             apart.append(f"{name} does not reach {[copy for copy, reaches in reached.items() if not reaches]}")
+    assert not apart
+
+
+@pytest.mark.parametrize("number", chapters.numbers())
+def test_a_number_that_a_study_draws_reaches_the_laws_of_all_cases(number: str) -> None:
+    """A rival with a copy of it in its own law would stay where it is."""
+    shipped, apart = compose_chapter(number), []
+    for experiment in chapters.load(number).experiments:
+        drawn = {key: value_at(shipped, key) for key in study.parameters(number, experiment.name)}
+        drawn = {key: value for key, value in drawn.items() if is_number(value) and not key[-1].isdigit()}
+        changed = compose_chapter(number, [f"{key}={value + 1}" for key, value in drawn.items()])
+        now = experiment_cases(changed, experiment.name)
+        for case, before in experiment_cases(shipped, experiment.name).items():
+            after = dict(leaves(now[case]))
+            for path, value in leaves(before):
+                same = [
+                    key for key in drawn if key.rpartition(".")[2] == path.rpartition(".")[2] and drawn[key] == value
+                ]
+                if path.startswith("law") and same and after[path] == value:
+                    apart.append(f"{same[0]} does not reach {experiment.name}.{case}.{path}")
     assert not apart
 
 

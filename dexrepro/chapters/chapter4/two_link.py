@@ -116,6 +116,8 @@ def simulate(config: Config) -> Recording:
     """Train on the strokes (if the case trains), then draw the ellipse; segments follow each other in ``time``."""
     arm = TwoLink(config.arm.lengths)
     law = build(config.law, model=arm, network=None)
+    if (network := memory(law)) is not None:
+        network.gain = network.gain * config.gain_factor
     parts, weights = [], []
     status = "finished"
     for number, reference in _segments(config, law):
