@@ -4,11 +4,13 @@ Provenance: each leaf of conf/chapter/N/EXPERIMENT.yaml says on its line where i
 
     stiffness: 45   # k_o [N/m] | printed 2.4.1.1
     rest_length: 0.55   # m | chosen: equals the printed initial estimate | 0.5..0.65
+    rates: [0, 0.5, 10]   # 1/s | chosen: not printed | -, 0.1..1, 1..50
     rate: 30   # 1/s | derived: sqrt of stiffness over mass
     motion: ramp   # - | printed 1.5.1 | one of ramp, sine
     inertia_about: centre   # - | chosen: the text leaves it open | drawn from centre, joint
 
-The book's symbol, where it has one, stands before the unit, which is then in brackets.
+The book's symbol, where it has one, stands before the unit, which is then in brackets. A list of numbers has one range
+for all its elements, or one each, ``-`` for those that stay.
 """
 
 from __future__ import annotations
@@ -30,6 +32,7 @@ class Provenance:
     words: those that a parameter which is a word may take ("| one of ramp, sine"; "| any" leaves it free). drawn: each
     of them is as good a reading of the book, so a study draws among them ("| drawn from centre, joint").
     symbol: the book's, in plain letters: ``lambda_1``, ``khat_o(0)``, ``rho_{1,0}``; None where it has none.
+    spans: the ranges of a list's elements, where each has its own; low and high are then those of all.
     """
 
     unit: str
@@ -40,13 +43,30 @@ class Provenance:
     symbol: str | None = None
     words: tuple[str, ...] = ()
     drawn: bool = False
+    spans: tuple[tuple[float, float] | None, ...] = ()
+
+    def of(self, place: str) -> Provenance:
+        """That of an element of a list by its place, such as ``2`` or ``0.1``; of all by an empty one."""
+        if not self.spans or not place:
+            return self
+        low, high = self.spans[int(place.partition(".")[0])] or (None, None)
+        return replace(self, low=low, high=high, spans=())
+
+    @property
+    def bounds(self) -> str:
+        """The range or ranges in words, empty where there is none."""
+        if self.low is None:
+            return ""
+        spans = self.spans or ((self.low, self.high),)
+        return ", ".join(f"{span[0]:g} to {span[1]:g}" if span else "-" for span in spans)
 
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_SPAN = rf"(?:{_NUMBER}\s*\.\.\s*{_NUMBER}|-)"
 _COMMENT = re.compile(
     r"^(?:(?P<symbol>[^|\[]+?)\s*\[)?(?P<unit>[^|\]]*?)\]?\s*"
     r"\|\s*(?P<kind>printed|chosen|derived)\b:?\s*(?P<text>[^|]*?)\s*"
-    rf"(?:\|\s*(?:(?P<low>{_NUMBER})\s*\.\.\s*(?P<high>{_NUMBER})"
+    rf"(?:\|\s*(?:(?P<spans>{_SPAN}(?:\s*,\s*{_SPAN})*)"
     r"|(?P<one>one of|drawn from) (?P<words>[\w, ]+)|any)\s*)?$"
 )
 _LINE = re.compile(r"^(?P<indent> *)(?P<key>[\w.\-]+|'[^']+'|\"[^\"]+\"):(?:\s+(?P<rest>.*))?$")
@@ -57,16 +77,19 @@ def parse_provenance(comment: str) -> Provenance | None:
     match = _COMMENT.match(comment.strip())
     if not match:
         return None
-    low, high = match["low"], match["high"]
+    ends = [part.split("..") for part in (match["spans"] or "").split(",")]
+    spans = tuple((float(pair[0]), float(pair[1])) if len(pair) == 2 else None for pair in ends)
+    known = [span for span in spans if span]
     return Provenance(
         match["unit"].strip(),
         match["kind"],
         match["text"],
-        float(low) if low else None,
-        float(high) if high else None,
+        min(low for low, _ in known) if known else None,
+        max(high for _, high in known) if known else None,
         match["symbol"],
         tuple(word.strip() for word in (match["words"] or "").split(",") if word.strip()),
         match["one"] == "drawn from",
+        spans if len(spans) > 1 else (),
     )
 
 

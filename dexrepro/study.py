@@ -104,8 +104,8 @@ def ranged(chapter: str, experiment: str) -> dict[str, Provenance]:
         shared = any(key == name or key.startswith(f"{name}.") for name in referred)
         if (origin.low is not None or origin.drawn) and (own or shared):
             for place, value in leaves(value_at(composed, key)):
-                if value in origin.words if origin.drawn else is_number(value):
-                    found[f"{key}.{place}".rstrip(".")] = origin
+                if value in origin.words if origin.drawn else is_number(value) and origin.of(place).low is not None:
+                    found[f"{key}.{place}".rstrip(".")] = origin.of(place)
     return found
 
 

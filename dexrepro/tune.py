@@ -140,7 +140,8 @@ def _declared(chapter: str, experiment: str, composed: Mapping[str, Any]) -> dic
     for key, _ in leaves({name: value for name, value in composed[experiment].items() if name != "cases"}):
         place: str | None = f"{experiment}.{key}"
         while place:
-            origin, node = origins.get(re.sub(r"(\.\d+)+$", "", place)), value_at(composed, place)
+            whole, node = re.sub(r"(\.\d+)+$", "", place), value_at(composed, place)
+            origin = origins[whole].of(place[len(whole) + 1 :]) if whole in origins else None
             if origin and origin.low is not None and origin.high is not None:
                 found[key] = (origin.low, origin.high)
             referred = re.fullmatch(r"\$\{([\w.]+)\}", node) if isinstance(node, str) else None

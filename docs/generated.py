@@ -123,7 +123,7 @@ def _parameters(number: str, title: str) -> str:
         cells = (f"`{rest}`", f"`{value}`", "", "", comment, "")
         if found := parse_provenance(comment):
             words = ", ".join(found.words)
-            varied = f"{found.low:g} … {found.high:g}" if found.low is not None and found.high is not None else words
+            varied = found.bounds.replace(" to ", " … ") or words
             origin = f"{found.kind}{' ' if found.kind == 'printed' else ': '}{found.text}".strip()
             cells = (*cells[:2], found.symbol or "", found.unit, origin, varied)
         text.append("| " + " | ".join(_escaped(cell) for cell in cells) + " |")

@@ -46,10 +46,9 @@ def shown(origin: Provenance | None) -> dict[str, Any]:
     """Symbol, unit, origin and range as texts, empty where there is none."""
     if origin is None:
         return {"symbol": "", "plain": "", "unit": "", "kind": "", "text": "", "range": ""}
-    bounds = f"{origin.low:g} to {origin.high:g}" if origin.low is not None else ""
     plain = origin.symbol or ""
     return {"symbol": symbols.html(plain), "plain": plain, "unit": origin.unit, "kind": origin.kind,
-            "text": origin.text, "range": bounds}  # fmt: skip
+            "text": origin.text, "range": origin.bounds}  # fmt: skip
 
 
 def value_of(node: Any, dotted: str) -> Any:

@@ -45,7 +45,7 @@ def _block(
             plain = {**({"type": TYPES[type(value)]} if type(value) in TYPES else {}), **words}
             found[name] = {"anyOf": [plain, {"type": "string", "pattern": r"\$\{"}, {"type": "null"}]} if plain else {}
             if origin:
-                bounds = f" ({origin.low:g} to {origin.high:g})" if origin.low is not None else ""
+                bounds = f" ({origin.bounds})" if origin.bounds else ""
                 symbol = f"{origin.symbol} " if origin.symbol else ""
                 found[name]["description"] = f"{symbol}[{origin.unit}] {origin.kind}: {origin.text}{bounds}"
     return {"type": ["object", "string", "null"], "properties": found}
