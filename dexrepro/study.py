@@ -139,8 +139,9 @@ def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float | s
     for share, (key, origin) in zip(point, numbers.items(), strict=False):
         if origin.kind != "chosen":
             continue
-        whole = isinstance(value_at(composed, key), int)
-        values[key] = within(float(share), origin.low or 0.0, origin.high or 0.0, whole)
+        low, high = origin.low or 0.0, origin.high or 0.0
+        whole = isinstance(value_at(composed, key), int) and low.is_integer() and high.is_integer()
+        values[key] = within(float(share), low, high, whole)
         set_value(composed, key, values[key])
     for share, (key, origin) in zip(_points(f"words of {experiment}", len(words))[index], words.items(), strict=False):
         values[key] = origin.words[int(share * len(origin.words))]

@@ -96,6 +96,22 @@ def test_points_cover_the_ranges_evenly_and_lists_are_drawn_element_by_element(
     study.ranged.cache_clear()
 
 
+def test_a_whole_number_is_drawn_whole_only_where_its_range_has_whole_ends(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    origin, composed = study.parameters("90", "decay")["decay.start"], study.compose_chapter("90")
+    composed["decay"]["start"] = 1
+    monkeypatch.setattr(study, "compose_chapter", lambda chapter: copy.deepcopy(composed))
+    for low, whole in ((1.0, True), (0.2, False)):
+        origins = {"decay.start": replace(origin, low=low, high=5.0)}
+        monkeypatch.setattr(study, "provenance", lambda chapter, origins=origins: origins)
+        study.ranged.cache_clear()
+        drawn = [study.draw("90", "decay", index)[0]["decay.start"] for index in range(8)]
+        assert all(isinstance(value, int) for value in drawn) is whole
+        assert min(drawn) >= low
+    study.ranged.cache_clear()
+
+
 def test_the_best_of_a_search_is_not_drawn_and_what_is_drawn_beside_it_stays(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
