@@ -6,6 +6,7 @@ import contextlib
 import csv
 import glob
 import re
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -23,17 +24,28 @@ TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
 SPELT = {"in": "inch", "inches": "inch", "meters": "m", "metres": "m", "centimeters": "cm", "centimetres": "cm",
          "millimeters": "mm", "millimetres": "mm", "sec": "s", "secs": "s", "seconds": "s", "minutes": "min",
          "msec": "ms", "milliseconds": "ms", "µs": "us", "μs": "us", "usec": "us", "microseconds": "us", "nsec": "ns",
-         "nsecs": "ns", "nanoseconds": "ns"}  # fmt: skip
+         "nsecs": "ns", "nanoseconds": "ns", "millis": "ms", "micros": "us", "nanos": "ns"}  # fmt: skip
 UNITS = {"", "-", *LENGTHS, *TIMES, *SPELT}
-TIME = {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}
+ANGLES = {"deg", "degree", "degrees", "rad", "radian", "radians"}
+OTHERS = {*ANGLES, "px", "pixel", "pixels", "um", "µm", "μm", "micrometers", "micrometres", "microns", "km", "ft",
+          "feet", "mps", "norm", "normalised", "normalized"}  # fmt: skip
+TIME = {"time", "t", "timestamp", "timestamps", "stamp", "datetime", "elapsed", "sec", "secs", "seconds", "zeit"}
+PLACE = {"x": "px", "y": "py", "z": "pz"}  # other names of columns, where nothing bears the plain one
 NANO = {"nanosec", "nanosecs", "nsec", "nsecs"}  # of a stamp whose whole seconds stand beside
-NO_PLACE = {"orientation", "rotation", "angular", "quaternion", "q", "velocity", "vel", "v", "speed", "acceleration",
-            "acc", "force", "torque", "seq"}  # fmt: skip
+NO_PLACE = {"orientation", "rotation", "rot", "angular", "angle", "euler", "quaternion", "quat", "q", "r", "twist",
+            "linear", "velocity", "vel", "v", "u", "w", "omega", "speed", "dot", "ddot", "d", "dd", "delta", "diff",
+            "acceleration", "accel", "acc", "a", "jerk", "gyro", "gyroscope", "mag", "magnetometer", "force", "f",
+            "torque", "wrench", "moment", "error", "err", "e", "std", "var", "cov", "covariance", "seq"}  # fmt: skip
+SAID = re.compile(r"(?:\bin|\bunits?)\W+(?:are|is)?\W*([a-zµμ]+)\b|[\[(]([a-zµμ]+)[\])]")  # units in words about a file
+REMARK = re.compile(r"(\S*)(^|\s+)(#(?!N/A|[A-Z/0]+[!?])|//)")  # behind the numbers of a row
 COMMENT = re.compile(r"\s*(#(?!N/A|[A-Z/0]+[!?])|%|//)[\s#%/]*")  # "#N/A", "#DIV/0!" and such are entries of a sheet
-STAMP = r"(\d{4}-\d\d-\d\d[t ])?\d?\d:\d\d:\d\d([.,]\d+)?(z|[-+]\d\d:?\d\d)?"  # of ISO 8601
+STAMP = (
+    r"(\d+ days? )?(\d{4}-\d\d-\d\d[t ])?\d?\d:\d\d:\d\d([.,]\d+)?(z|[-+]\d\d:?\d\d)?"  # ISO 8601's, a span of pandas
+)
 FEWEST = 8
 LONG = 60.0  # s; a file that lasts longer with steps of a second or more has other stamps than seconds
 SHORT = 0.01  # s; no movement of a hand
+WIDE = 2.0  # m; neither
 csv.field_size_limit(2**31 - 1)  # by default 128 kB, which a note or a picture in base64 beside the path exceeds
 SHOWN, LONGEST = 60, 300  # letters of a line and of a header in a sentence
 PAUSE = 10.0  # times the usual step; where such pauses take a third of the time, clocks have jumped
@@ -67,21 +79,22 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
     Columns are parted by commas, semicolons, tabs or blanks; the decimal mark may be a comma where that is clear. Times
     are numbers, or dates with a clock's time as ISO 8601 writes them, or this alone. A
     line before the numbers may name the columns, in any order and among others, with their units in brackets. Lines
-    that begin with #, % or // are comments. otherwise: the unit of length where neither header nor ``style`` tells it.
+    that begin with #, % or // are comments, as is what stands behind # or // in a row. otherwise: the unit of length
+    where neither header nor ``style`` tells it.
     Raises ValueError with one sentence where the file cannot be used.
     """
     try:
-        lines = decoded(Path(path).expanduser().read_bytes(), style.encoding).replace("\u2212", "-").splitlines()
+        lines = _text(path, style).replace("\u2212", "-").splitlines()
     except OSError as error:
         raise ValueError(f"cannot read '{path}': {error.strerror}") from None
     except ValueError as error:
         raise ValueError(f"cannot read '{path}': {error}") from None
     try:
         table = _Table(lines, ("time", "x", "y", "z")[: axes + 1])
-        length = table.unit(style, "unit", LENGTHS, 1)
+        length = table.unit(style, "unit", LENGTHS, 1, otherwise)
         if table.dated and style.time_unit not in (None, "s"):
             raise ValueError(f"its times are a clock's; leave out time_unit={style.time_unit}")
-        tick = "s" if table.dated else table.unit(style, "time_unit", TIMES, 0)
+        tick = "s" if table.dated else table.unit(style, "time_unit", TIMES, 0, "s")
         data, numbers = table.data()
         time, position = TIMES[tick or "s"] * (data[:, 0] - data[0, 0]), LENGTHS[length or otherwise] * data[:, 1:]
         if style.duplicates == "drop":
@@ -96,8 +109,8 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
 def read_corners(path: str, style: Format = Format(), otherwise: str = "m") -> Array:
     """Corners (n, 2) [m] of a polygon, in order, from a file with the columns x, y; see :func:`read_path`."""
     try:
-        table = _Table(decoded(Path(path).expanduser().read_bytes(), style.encoding).splitlines(), ("x", "y"))
-        corners = LENGTHS[table.unit(style, "unit", LENGTHS, 1) or otherwise] * table._row_by_row()[0]
+        table = _Table(_text(path, style).splitlines(), ("x", "y"))
+        corners = LENGTHS[table.unit(style, "unit", LENGTHS, 1, otherwise) or otherwise] * table._row_by_row()[0]
     except OSError as error:
         raise ValueError(f"cannot read '{path}': {error.strerror}") from None
     except ValueError as error:
@@ -109,6 +122,18 @@ def read_corners(path: str, style: Format = Format(), otherwise: str = "m") -> A
             f"'{path}': it has no area; it must hold the corners x, y of a polygon, three or more, in order"
         )
     return corners
+
+
+def _text(path: str, style: Format) -> str:
+    """What a file holds. Raises ValueError with half a sentence where it is another kind of text than a table."""
+    text = decoded(Path(path).expanduser().read_bytes(), style.encoding)
+    begin = text.lstrip()[:SHOWN]
+    if not begin:
+        raise ValueError("it is empty")
+    if begin[0] in "{<" or re.match(r"\[\s*[\[{\d-]", begin):
+        kind = "XML" if begin[0] == "<" else "JSON or a printed list"
+        raise ValueError(f"it is {kind}, not columns of numbers; export them as CSV")
+    return text
 
 
 class _Table:
@@ -130,18 +155,25 @@ class _Table:
         self.separator = self._separator(lines[first - 1] if first else "")
         head = [k for k in range(first) if stripped[k] and not stripped[k].startswith("sep=")]
         plain = [k for k in head if not COMMENT.match(lines[k])]
-        for k in reversed(head):
+        for k in head[::-1]:
             if self.columns is None:
                 self._name(lines[k])
                 if self.columns is not None:  # rows that hold no numbers enough are to be refused, not left out
                     self.body = [other for other in plain if other > k and _numbers(lines[other])] + self.body
+                    self.body = [other for other in self.body if stripped[other] != stripped[k]]  # the header again
+                    head.remove(k)
+        self.about = {k: lines[k].lower() for k in head}
         if plain and not self.body:
             shown = f"line {plain[-1] + 1} holds '{stripped[plain[-1]][:SHOWN]}'"
             parted = "it has no row of numbers parted by commas, semicolons, tabs or blanks"
-            raise ValueError(f"{parted} ({', '.join(wanted)} are wanted); {shown}")
+            raise ValueError(f"{parted} for each of {', '.join(wanted)}; {shown}")
         if plain and self.columns is None:
+            if _numbers(lines[plain[-1]]):
+                shown = f"line {plain[-1] + 1} holds '{lines[plain[-1]].strip()[:SHOWN]}'"
+                raise ValueError(f"{shown}: it must have {', '.join(wanted)}, or name the columns")
             names = max(map(_fields, (lines[k] for k in reversed(plain))), key=self._found)
-            raise ValueError(f"its columns are {', '.join(names)[:LONGEST]}; they must be {', '.join(wanted)}")
+            shown = ", ".join(name or "(no name)" for name in names)[:LONGEST]
+            raise ValueError(f"its columns are {shown}; they must be {', '.join(wanted)}")
         self.dated = wanted[0] == "time" and bool(self.body) and _seconds(self._chosen(self.body[0])[0]) is not None
         self._check(first)
 
@@ -170,9 +202,15 @@ class _Table:
         return max((";", "\t", ",", None), key=rows)
 
     def _split(self, line: str, separator: str | None) -> list[str]:
-        """The entries of a row, without quotes and without empty ones at its end."""
-        row = next(csv.reader([line], delimiter=separator)) if separator else line.split()
-        row = [entry.strip().strip('"') for entry in row]
+        """The entries of a row, without quotes, a remark behind them and empty ones at its end."""
+        row = _entries(line, separator) if separator else line.split()
+        row = [entry.strip().strip("\"'") for entry in row]
+        if "#" in line or "//" in line:
+            enough = max(self.columns or [len(self.wanted) - 1])
+            for k, entry in enumerate(row):
+                if (match := REMARK.match(entry)) and (_is_entry(match[1]) if match[1] else k > enough):
+                    row = [*row[:k], match[1]]
+                    break
         while row and not row[-1]:
             row.pop()
         return row
@@ -189,24 +227,37 @@ class _Table:
     def _name(self, line: str) -> None:
         """Take the columns, or their units, from a line before the numbers, if it names them."""
         names = _fields(COMMENT.sub("", line))
-        found = [_column(name, names) for name in self.wanted]
-        if self._found(names) < len(self.wanted):
-            units = [entry.strip("[]() ") for entry in names]
-            if not (COMMENT.match(line) or _numbers(line)) or {entry.lower() for entry in units} <= UNITS:
+        units = [entry.strip("[]() ") for entry in names]
+        known = {entry.lower() for entry in units} <= UNITS | OTHERS
+        if known or self._found(names) < len(self.wanted):
+            if known or not (COMMENT.match(line) or _numbers(line)):
                 self.units = units  # perhaps a row of units under the names
             return
+        found = [_column(name, names) for name in self.wanted]
         self.columns, self.named = [column for column in found if column is not None], len(names)
         under = self.units if len(self.units) == len(names) else [""] * len(names)
         self.units = [_unit(names[column]) or under[column] for column in self.columns]
         if len(set(self.units[1:])) > 1:
-            raise ValueError(
-                f"its header gives {', '.join(self.wanted[1:])} in {', '.join(self.units[1:])}; give all in one unit"
-            )
+            shown = ", ".join(unit or "no unit" for unit in self.units[1:])
+            raise ValueError(f"its header gives {', '.join(self.wanted[1:])} in {shown}; give all in one unit")
 
-    def unit(self, style: Format, key: str, allowed: dict[str, float], column: int) -> str | None:
-        """The unit of a column by style and header, None where neither tells it."""
+    def unit(self, style: Format, key: str, allowed: dict[str, float], column: int, otherwise: str) -> str | None:
+        """The unit of a column by style and header, None where neither tells it. Refuses to go by ``otherwise`` where
+        a line about the file speaks of another one."""
         given, said = getattr(style, key), self.units[column].strip("-").lower() if self.columns else ""
         said = SPELT.get(said, said)
+        if not (given or said):
+            for k, line in self.about.items():
+                for match in SAID.finditer(line):
+                    word = SPELT.get(match[1] or match[2], match[1] or match[2])
+                    if word != otherwise and (word in allowed or (column and word in OTHERS)):
+                        right = word if word in allowed else otherwise
+                        raise ValueError(
+                            f"line {k + 1} says '{match[0]}', and no column has a unit; set {key}={right} if that is "
+                            f"the one of its {'lengths' if column else 'times'}, else {key}={otherwise}"
+                        )
+        if said in ANGLES and not given:
+            raise ValueError(f"its header gives {self.wanted[column]} in {said}, which is no length; give positions")
         if said and said not in allowed and not given:
             raise ValueError(f"its header gives {self.wanted[column]} in {said}; set {key}= to {', '.join(allowed)}")
         if given and said in allowed and said != given:
@@ -246,7 +297,7 @@ class _Table:
                 chosen[0] = instant
             marks |= {mark for entry in chosen[self.dated :] for mark in ".," if mark in entry}
             if not all(map(_is_number, map(_point, chosen))) or len(marks) > 1:
-                must = "every entry must be a finite number"
+                must = "every entry must be a finite number; delete the row or fill it in"
                 if ":" in chosen[0]:
                     must = "its time must be a number, or all be as 2026-11-28T10:00:00.25 or 10:00:00.25"
                 elif len(marks) > 1:
@@ -261,36 +312,46 @@ def _fields(line: str) -> list[str]:
     """Entries of a header, whatever parts them; a unit in brackets stays with its name."""
     line = re.sub(r"\s+([\[(])", r"\1", line.strip())
     separator = next((mark for mark in ";\t," if mark in line), None)
-    return [entry.strip(' "') for entry in line.split(separator)]
+    return [entry.strip(" \"'") for entry in (_entries(line, separator) if separator else line.split())]
+
+
+def _entries(line: str, separator: str) -> list[str]:
+    """The entries of a line; of one that is quoted as a whole, too."""
+    row = next(csv.reader([line], delimiter=separator))
+    return next(csv.reader(row, delimiter=separator)) if len(row) == 1 and separator in row[0] else row
 
 
 def _parts(name: str) -> list[str]:
-    """The words of a column's name in small letters, without its unit."""
-    return [word for word in re.split(r"[^a-z0-9]+", re.sub(r"[\[(].*", "", name.lower())) if word]
+    """The words of a column's name in small letters, without its unit; posX are two."""
+    name = re.sub("(?<=[a-z])(?=[A-Z])", " ", re.sub(r"[\[(].*", "", name))
+    return [word for word in re.split(r"[\W_]+", name.lower()) if word]
 
 
 def _unit(name: str) -> str:
     """The unit in a column's name: in brackets, or the last word behind the first that is one; empty where none is."""
     if bracket := re.search(r"[\[(]([^\])]*)", name):
-        return bracket[1].strip()
-    return next((word for word in reversed(_parts(name)[1:]) if word in UNITS - TIME), "")
+        return re.sub(r"^in\s+", "", bracket[1].strip())
+    first, *rest = _parts(name) or [""]
+    found = next((word for word in reversed(rest) if word in (UNITS | OTHERS) - TIME), "")
+    return found or (first if rest and first in OTHERS else "")
 
 
 def _column(wanted: str, names: Sequence[str]) -> int | None:
     """Which of the names is the wanted column: the one of fewest words that has its word, a place's before others."""
     ranked = []
+    plain = TIME if wanted == "time" else {wanted}
     for column, name in enumerate(names):
-        words = _parts(name)
-        if set(words) & (TIME if wanted == "time" else {wanted}) and not set(words) & NO_PLACE:
-            ranked.append((not {"position", "pos"} & set(words), len(words), column))
+        words = {*_parts(name)}
+        if words & {*plain, PLACE.get(wanted)} and not words & NO_PLACE:
+            ranked.append((not words & plain, not {"position", "pos"} & words, len(_parts(name)), column))
     ranked.sort()
-    if len(ranked) > 1 and ranked[0][:2] == ranked[1][:2]:
-        first, second = (column for _, _, column in ranked[:2])
+    if len(ranked) > 1 and ranked[0][:3] == ranked[1][:3]:
+        first, second = (column for *_, column in ranked[:2])
         both = f"{names[first]} and {names[second]} (columns {first + 1} and {second + 1})"
         if wanted == "time" and NANO & {*_parts(names[first]), *_parts(names[second])}:
             raise ValueError(f"its time is split into {both}; give it in one column, 1e-9 times the nanoseconds added")
         raise ValueError(f"its columns {both} could both be {wanted}; rename one")
-    return ranked[0][2] if ranked else None
+    return ranked[0][-1] if ranked else None
 
 
 def _check(time: Array, position: Array, numbers: Array, tick: str | None) -> None:
@@ -316,7 +377,9 @@ def _check(time: Array, position: Array, numbers: Array, tick: str | None) -> No
             f"time_unit={likely} if that is the unit of its stamps, time_unit=s if it is as slow as that"
         )
     if total < SHORT:
-        raise ValueError(f"it lasts {total:.3g} s from line {numbers[0]} to {numbers[-1]}; time_unit= must be another")
+        raise ValueError(
+            f"it lasts {total:.3g} s from line {numbers[0]} to {numbers[-1]}; its unit of time must be another"
+        )
     if not np.ptp(position, axis=0).any():
         raise ValueError("it never moves: all its samples are at one place")
 
@@ -347,6 +410,9 @@ def demonstrations(
     if len(found) > count:
         raise ValueError(f"{len(found)} files are more than the {count} demonstrations of the experiment")
     paths = [resampled(*read_path(name, style, axes, otherwise), samples) for name in found]
+    for name, path in zip(found, paths, strict=True):
+        if (span := float(np.ptp(path, axis=0).max())) > WIDE:
+            warnings.warn(f"'{name}' spans {span:.3g} m; set unit= if no hand went as far as that", stacklevel=2)
     return [paths[k % len(paths)] for k in range(count)]
 
 
@@ -366,7 +432,7 @@ def _first_row(lines: Sequence[str], enough: int) -> int:
 def _numbers(line: str) -> int:
     """How many entries of a line are numbers, whatever parts them."""
     return sum(re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|[-+]?inf|" + STAMP, entry) is not None
-               for entry in re.split(r'[;,\s"]+', line.lower()))  # fmt: skip
+               for entry in re.split(r"""[;,\s"']+""", line.lower()))  # fmt: skip
 
 
 def _point(entry: str) -> str:
@@ -379,8 +445,9 @@ def _seconds(entry: str) -> str | None:
     if not re.fullmatch(STAMP, entry.lower()):
         return None
     with contextlib.suppress(ValueError):  # such as the 31st of February
+        days, _, entry = entry.rpartition(" days ") if " days " in entry else entry.rpartition(" day ")
         date = datetime.fromisoformat(entry if "-" in entry[:5] else f"1970-01-01T{'0' * (entry[1] == ':')}{entry}")
-        return repr((date if date.tzinfo else date.replace(tzinfo=UTC)).timestamp())
+        return repr(86400 * int(days or 0) + (date if date.tzinfo else date.replace(tzinfo=UTC)).timestamp())
     return None
 
 

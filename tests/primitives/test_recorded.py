@@ -96,6 +96,23 @@ COMMAS = rows("{t};{x};{y}").replace(".", ",")
         "id,time,x,y,comment\n" + rows("a,{t},{x},{y},fine"),
         rows("+{t}e0,{x},{y}"),
         "Format Version,1.23,Rate,120.000,Exported,2\n\n,,pen,pen\nFrame,Time (Seconds),X,Y\n" + rows("7,{t},{x},{y}"),
+        ",time,x,y\n" + rows("7,{t},{x},{y}"),
+        "time,x,y\n" + rows("0 days 00:00:0{t}00000,{x},{y}"),
+        "time,x,y\n" + rows("1 days 00:00:0{t},{x},{y}"),
+        "time,x,y\n" + rows("{t},{x},{y} # fine, too"),
+        "time,note,x,y\n" + rows("{t},trial 5 #3,{x},{y}"),
+        rows("{t} {x} {y} // fine"),
+        rows("{t},{x},{y}").replace("\n2.5", " # the pen rests\n2.5") + "# the end\n",
+        "time,px,py,vx,vy\n" + rows("{t},{x},{y},5,5"),
+        "time,px,py,x,y\n" + rows("{t},5,5,{x},{y}"),
+        "Time,PosX,PosY,VelX,VelY\n" + rows("{t},{x},{y},5,5"),
+        '"time,x,y"\n' + rows('"{t},{x},{y}"'),
+        "time;x;y\n" + rows('"{t};{x};{y}"').replace(".", ","),
+        "'time','x','y'\n" + rows("'{t}','{x}','{y}'"),
+        '"time, s","x, m","y, m"\n' + PLAIN,
+        "time (in s),x (in m),y (in m)\n" + PLAIN,
+        "time,x,y\n" + PLAIN.replace("\n2.5", "\ntime,x,y\n2.5"),
+        "Length Units,Meters\ntime,x,y\n" + PLAIN,
         "time,x,y,picture\n" + rows("{t},{x},{y}," + "QUJD" * 50_000),
     ],
 )  # fmt: skip
@@ -160,6 +177,22 @@ def test_units_come_from_the_header_or_from_who_knows_better(
     [
         ("time,x [px],y [px]", Format(), "its header gives x in px; set unit= to m, cm, mm, inch"),
         ("time,x [mm],y [mm]", Format("cm"), "its header gives x in mm, not in cm; set unit=mm"),
+        ("time,x_px,y_px", Format(), "its header gives x in px; set unit= to m, cm, mm, inch"),
+        ("time,pixelX,pixelY", Format(), "its header gives x in pixel; set unit= to m, cm, mm, inch"),
+        ("time,x_µm,y_µm", Format(), "its header gives x in µm; set unit= to m, cm, mm, inch"),
+        ("t_µs,x,y [mm]", Format(), "its header gives x, y in no unit, mm; give all in one unit"),
+        ("time,x_deg,y_deg", Format(), "its header gives x in deg, which is no length; give positions"),
+        ("time,twist.linear.x,twist.linear.y", Format(), "its columns are time, twist.linear.x, twist.linear.y; they"),
+        ("time,accX,accY", Format(), "its columns are time, accX, accY; they must be time, x, y"),
+        (",x,y", Format(), "its columns are .no name., x, y; they must be time, x, y"),
+        ("# all in mm\ntime,x,y", Format(), "line 1 says 'in mm', .* set unit=mm if .* else unit=m"),
+        ("Length Units,Millimeters\ntime,x,y", Format(), "line 1 says 'units,millimeters', .* set unit=mm if"),
+        (
+            "# time in ms\ntime,x [mm],y [mm]",
+            Format(),
+            "line 1 says 'in ms', .* set time_unit=ms if .* else time_unit=s",
+        ),
+        ("# time,x,y [px]\n", Format(), "its header gives x, y in no unit, px"),
         ("time [h],x,y", Format(), "its header gives time in h; set time_unit= to s, ms, us, ns, min"),
         ("time,x1,y1", Format(), "its columns are time, x1, y1; they must be time, x, y"),
         ("Frame,X,Y\n,mm,mm", Format(), "its columns are Frame, X, Y; they must be time, x, y"),
@@ -179,7 +212,7 @@ def test_units_come_from_the_header_or_from_who_knows_better(
 def test_a_header_that_leaves_a_doubt_gets_one_sentence(
     tmp_path: Path, header: str, style: Format, sentence: str
 ) -> None:
-    rows = [f"{0.1 * k},{k},{2 * k}" + ",0" * (header.count(",") - 2) for k in range(10)]
+    rows = [f"{0.1 * k},{k},{2 * k}" + ",0" * (header.splitlines()[-1].count(",") - 2) for k in range(10)]
     with pytest.raises(ValueError, match=sentence):
         read_path(write(tmp_path, rows, header + "\n"), style, axes=2)
 
@@ -201,7 +234,7 @@ def rested(pause: float) -> list[float]:
         (1200.0 * np.arange(60), "set time_unit=us if that"),
         (900.0 * np.arange(60), "set time_unit=ms if that"),
         (np.arange(100), "line 3 comes 1 s after the line before, and all take 99 s; set time_unit=ms"),
-        (1e-6 * np.arange(60), "it lasts 5.9e-05 s from line 2 to 61; time_unit= must be another"),
+        (1e-6 * np.arange(60), "it lasts 5.9e-05 s from line 2 to 61; its unit of time must be another"),
     ],
 )  # fmt: skip
 def test_stamps_that_are_no_seconds_of_one_movement_get_one_sentence(tmp_path: Path, stamps, sentence: str) -> None:
@@ -275,13 +308,27 @@ def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
             "time,x,y\n",
             "line 6 holds '2.4,nan,1': every entry must be a fin",
         ),
+        ([], "\n\n", "it is empty"),
+        (
+            ['{"time": 1, "x": 2, "y": 3}'],
+            "",
+            "it is JSON or a printed list, not columns of numbers; export them as CSV",
+        ),
+        (["[[0.0 1.0 2.0]", "[0.1 1.0 2.0]]"], "", "it is JSON or a printed list"),
+        (["<path>", "<p t='0' x='1' y='2'/>"], "", "it is XML, not columns"),
+        (["0.0,,", *ROWS], "", "line 1 holds '0.0,,': it must have time, x, y, or name the columns"),
+        (
+            [row.replace(",", " mm,") for row in ROWS],
+            "time,x,y\n",
+            "line 2 holds .*every entry must be a finite number",
+        ),
         ([*ROWS[:4], "2.4,one,1", *ROWS[5:]], "", "line 5 holds '2.4,one,1'"),
         ([*ROWS[:4], "2.4,,1", *ROWS[5:]], "time,x,y\n", "line 6 holds '2.4,,1'"),
         ([*ROWS[:4], "2.4,3", *ROWS[5:]], "time,x,y\n", "line 6 holds '2.4,3'"),
         ([*ROWS[:4], "2.4,3", *ROWS[5:]], "", "line 5 has 2 numbers"),
         ([*ROWS[:4], ROWS[3], *ROWS[5:]], "time,x,y\n", "does not increase at line 6"),
         (ROWS[:7], "time,x,y\n", "has 7 samples; there must be at least 8"),
-        ([], "", "has 0 samples"),
+        (["# x"], "", "has 0 samples"),
         ([], "time,x,y\n", "it has no row of numbers parted by commas, semicolons, tabs or blanks"),
         (["0.5|1|2"] * 9, "time|x|y\n", r"it has no row of numbers parted by .*; line 10 holds '0.5.1.2'"),
         (["#N/A,1,2"] * 9, "0,1,2\n1,1,3\n", "line 3 holds '#N/A,1,2': every entry must be a finite number"),
@@ -373,8 +420,8 @@ def test_what_is_no_text_is_said_to_be_none(tmp_path: Path) -> None:
 def test_several_files_take_turns(tmp_path: Path) -> None:
     for number in (1, 2):
         (tmp_path / f"{number}.csv").write_text("\n".join(f"{k},{number * k},0" for k in range(8)))
-    paths = demonstrations(str(tmp_path / "*.csv"), 3, 20, Format(), axes=2)
-    assert [path[-1, 0] for path in paths] == pytest.approx([7, 14, 7])
+    paths = demonstrations(str(tmp_path / "*.csv"), 3, 20, Format("cm"), axes=2)
+    assert [path[-1, 0] for path in paths] == pytest.approx([0.07, 0.14, 0.07])
     with pytest.raises(ValueError, match="2 files are more than the 1 demonstrations"):
         demonstrations(str(tmp_path / "*.csv"), 1, 20, Format(), axes=2)
 
@@ -385,8 +432,14 @@ def test_several_files_take_turns(tmp_path: Path) -> None:
 def test_a_name_is_a_name_before_it_is_a_pattern(tmp_path: Path, name: str) -> None:
     (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text("\n".join(ROWS))
-    (path,) = demonstrations(str(tmp_path / name), 1, 20, Format(), axes=2)
-    assert path[-1] == pytest.approx([9, 18])
+    (path,) = demonstrations(str(tmp_path / name), 1, 20, Format("cm"), axes=2)
+    assert path[-1] == pytest.approx([0.09, 0.18])
+
+
+def test_a_path_that_no_hand_can_have_gone_is_read_with_a_warning(tmp_path: Path) -> None:
+    pixels = write(tmp_path, [f"0.{k},{100 * k},{k}" for k in range(8)])
+    with pytest.warns(UserWarning, match="path.csv' spans 7 m; set unit= if no hand went as far as that"):
+        demonstrations(pixels, 1, 20, Format(), axes=2, otherwise="cm")
 
 
 SQUARE = ["0,0", "4,0", "4,2", "0,2"]
