@@ -21,7 +21,13 @@ from dexrepro.robots.arm import GREY, Arm, Joint, Link, Pose, Shape
 from dexrepro.text import decoded
 
 TURNING = ("revolute", "continuous")
-FOREIGN = {"mujoco": "an MJCF file of MuJoCo", "sdf": "an SDF file of Gazebo", "COLLADA": "a COLLADA mesh"}
+FOREIGN = {
+    "mujoco": "an MJCF file of MuJoCo",
+    "mujocoinclude": "a part of an MJCF file of MuJoCo",
+    "sdf": "an SDF file of Gazebo",
+    "COLLADA": "a COLLADA mesh",
+}
+SEMANTIC = {"group", "group_state", "end_effector", "virtual_joint", "disable_collisions"}  # of an SRDF file of MoveIt
 MESHES = (".stl", ".obj", ".dae")  # what the engine reads
 NEEDED = ("value", "ixx", "iyy", "izz", "size", "radius", "length")  # of an element that is there, as in ROS
 LONGEST = 255  # letters of a name; PyBullet ends the process for some thousand bytes
@@ -82,6 +88,8 @@ def _parsed(path: Path) -> xml.Element:
     declared = re.match(rb"\s*<\?xml[^>]*encoding=[\"']([\w.-]+)", data)
     eight_bits = declared and not declared[1].lower().startswith(b"utf")
     text = decoded(data, declared[1].decode() if declared and eight_bits else None)
+    if not text.strip():
+        raise ValueError("it is empty")
     text = re.sub(r"<\?xml\s.*?\?>", "", text, count=1, flags=re.DOTALL)  # it may stand behind a comment
     # What ROS reads of comments, "--" within them, no strict parser does.
     text = re.sub("<!--.*?-->", lambda comment: "\n" * comment[0].count("\n"), text, flags=re.DOTALL)
@@ -103,6 +111,8 @@ def _parsed(path: Path) -> xml.Element:
         "${" in value or "$(" in value for part in parts for value in part.attrib.values()
     ):
         raise ValueError("it still holds xacro; turn it into URDF first: xacro FILE > arm.urdf")
+    if robot.find("link") is None and any(child.tag in SEMANTIC for child in robot):
+        raise ValueError("it is an SRDF file of MoveIt, which holds no links; name the URDF file that it is about")
     return robot
 
 
@@ -120,12 +130,15 @@ class _Tree:
         self.into: dict[str, xml.Element] = {}
         self.children: dict[str, list[str]] = {name: [] for name in self.links}
         self.path, self.packages, self.mended = path, packages, list[str]()
+        self.zero: dict[str, list[str]] = {"effort": [], "velocity": []}  # joints with such a limit of 0
         for name, folder in packages.items():
             if not Path(folder).expanduser().is_dir():
                 raise ValueError(f"packages.{name} = {folder} is not allowed: there is no such folder")
         for name, node in _by_name(robot, "joint").items():
             for role in ("parent", "child"):
-                if (link := _link(node, role)) not in self.links:
+                if not (link := _link(node, role)):
+                    raise ValueError(f"joint '{name}' has no {role}; it needs <{role} link=\"...\"/>")
+                if link not in self.links:
                     close = difflib.get_close_matches(link, self.links, n=1)
                     raise ValueError(
                         f"joint '{name}' names '{link}' as its {role}, and no link has that name"
@@ -159,6 +172,10 @@ class _Tree:
             self._joint(node, Pose.of(self.between(parent, child)))
             for node, parent, child in zip(chain, [root, *moving], moving, strict=False)
         )
+        for quantity, zero in self.zero.items():
+            if zero:
+                has = f"joints {', '.join(zero)} have" if len(zero) > 1 else f"joint '{zero[0]}' has"
+                self.mended.append(f"{has} the {quantity} limit 0, which is taken for none")
         ends = [self.between(a, b)[:3, 3] for a, b in zip(moving, [*moving[1:], end], strict=True)]
         bodies, doubts = zip(*(self.body(name, set(moving), tip) for name, tip in zip(moving, ends, strict=True)))
         if off := [f"link {link.name} by {100 * share:.2g} %" for link, share in zip(bodies, doubts) if share > 1e-6]:
@@ -166,7 +183,7 @@ class _Tree:
                 f"{', '.join(off)}: no rigid body has this inertia (a moment exceeds the sum of the other two, or is "
                 f"negative, by that share of the largest); up to {100 * ROUNDING:g} % is taken for rounding and mended"
             )
-        self.mended += _doubts(above, joints, bodies)
+        self.mended += _doubts(above, bodies)
         last, axis = bodies[-1], np.array(joints[-1].axis)
         if not axis @ last.inertia_matrix @ axis + last.mass * np.sum(np.cross(axis, last.com) ** 2) > 0:
             raise ValueError(f"link '{last.name}' has no inertia about joint '{joints[-1].name}'; give it one")
@@ -249,6 +266,8 @@ class _Tree:
             shapes += self.shapes(part, frame)
             if (inertial := self.links[part].find("inertial")) is not None:
                 parts.append((part, *_inertial(inertial, frame)))
+                if inertial.find("inertia") is None:
+                    self.mended.append(f"link '{part}' has no <inertia>, and is taken for a point mass")
                 if parts[-1][1] < 0:
                     raise ValueError(f"link '{part}' has the mass {parts[-1][1]:g} kg; it must not be negative")
         mass = sum(m for _, m, _, _ in parts)
@@ -324,6 +343,8 @@ class _Tree:
         for quantity, value in {"effort": effort, "velocity": velocity}.items():
             if value < 0:
                 raise ValueError(f"joint '{name}' has the {quantity} limit {value:g}; it must not be negative")
+            if value == 0:
+                self.zero[quantity].append(name)
         if bounded and lower == upper:
             if lower:
                 raise ValueError(f"joint '{name}' has the limits {lower:g} to {upper:g}; it cannot move")
@@ -335,15 +356,17 @@ class _Tree:
         return Joint(name, origin, tuple(_axis(node).tolist()), *bounds, effort or math.inf, velocity or math.inf)
 
 
-def _doubts(above: Sequence[xml.Element], joints: Sequence[Joint], bodies: Sequence[Link]) -> Iterator[str]:
+def _doubts(above: Sequence[xml.Element], bodies: Sequence[Link]) -> Iterator[str]:
     """What can be simulated but no arm has, so that another unit than rad, m or kg is likely."""
     for node in above:
         turn = _floats(node.find("origin"), "rpy", "0 0 0")
         if max(map(abs, turn)) > 2 * math.pi + 0.01:
             yield f"joint '{_name(node)}' has the rpy {' '.join(f'{x:g}' for x in turn)}; it is in rad, not in degrees"
-    for joint, link in zip(joints, bodies, strict=True):
-        if (away := float(np.linalg.norm(joint.origin.xyz))) > LARGEST:
-            yield f"joint '{joint.name}' stands {away:g} m from what carries it; lengths are in m"
+        if (away := math.hypot(*_floats(node.find("origin"), "xyz", "0 0 0"))) > LARGEST:
+            yield f"joint '{_name(node)}' stands {away:g} m from what carries it; lengths are in m"
+    for link in bodies:
+        if (away := math.hypot(*link.com)) > LARGEST:
+            yield f"link '{link.name}' has its centre of mass {away:g} m from its joint; lengths are in m"
         moment = float(np.linalg.eigvalsh(link.inertia_matrix)[-1])
         if moment > link.mass * LARGEST**2 / 10:
             yield f"link '{link.name}' has {moment:g} kg m^2 at {link.mass:g} kg; its units are kg and m"

@@ -32,7 +32,7 @@ URDF = f"""<robot name="three">
 <joint name="plate" type="fixed"><origin xyz="0 0.1 0.2" rpy="1 0 0"/><parent link="one"/><child link="two"/></joint>
 <link name="two">{INERTIAL.format(0.02, 1)}</link>
 <joint name="pitch" type="revolute"><origin xyz="0.1 0 0" rpy="0 0.4 0"/><parent link="two"/><child link="three"/>
-<axis xyz="1 1 0"/><limit lower="-1" upper="2" effort="0" velocity="3"/></joint>
+<axis xyz="1 1 0"/><limit lower="-1" upper="2" effort="9" velocity="3"/></joint>
 <link name="three">{INERTIAL.format(0.1, 0.5)}</link>
 <joint name="camera" type="fixed"><origin xyz="0 0 0.1"/><parent link="three"/><child link="eye"/></joint>
 <link name="eye">{INERTIAL.format(0.0, 0.2)}</link>
@@ -94,7 +94,7 @@ def test_what_is_no_name_gets_one_sentence(path: Path, words: dict[str, Any], se
 def test_limits_and_base_are_those_given(path: Path) -> None:
     arm = from_urdf(str(path), "tip", base=[1, 0, 0, 0, 0, np.pi / 2])
     assert arm.lower.tolist() == [-np.inf, -1]
-    assert arm.effort.tolist() == [30, np.inf], "an effort of 0 stands for none given"
+    assert arm.effort.tolist() == [30, 9]
     moved = forward(from_urdf(str(path), "tip"), [0.0, 0.0])[0]
     assert forward(arm, [0.0, 0.0])[0] == pytest.approx([1 - moved[1], moved[0], moved[2]])
 
@@ -110,7 +110,7 @@ def test_what_the_link_named_root_hangs_on_is_left_out(path: Path) -> None:
         from_urdf(str(path), "base", root="eye")
 
 
-LIMIT = '<limit lower="-1" upper="2" effort="0" velocity="3"/>'
+LIMIT = '<limit lower="-1" upper="2" effort="9" velocity="3"/>'
 LOOP = '<joint name="loop" type="revolute"><parent>three</parent><child>one</child></joint>'
 
 
@@ -163,6 +163,7 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
     [
         (("</robot>", ""), "it is no XML file"),
         (("robot", "mujoco"), "it is an MJCF file of MuJoCo"),
+        (('<parent link="base"/>', ""), "joint 'yaw' has no parent; it needs <parent link="),
         (("robot", "html"), "it is a web page; download the file itself that it shows"),
         (("robot", "model"), "it is no URDF: it begins with <model>"),
         (("0.1 0.1 0.2", "0.1 -0.1 0.2"), 'line 1: <box size="0.1 -0.1 0.2"> of link .one. has a negative size'),
@@ -290,6 +291,20 @@ def test_rounding_stops_no_engine(tmp_path: Path, rpy: str, moments: tuple[float
     assert speed == pytest.approx([5.0 * 0.009 / inertia], rel=0.12), "with damping, which asks for the mass matrix"
 
 
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (" \n", "it is empty"),
+        ("<robot name='three'><group name='arm'/></robot>", "it is an SRDF file of MoveIt, which holds no links; name"),
+        ("<robot name='three'/>", "it has no link 'tip'; there are: none"),
+    ],
+)
+def test_a_file_without_an_arm_is_named_for_what_it_is(path: Path, text: str, sentence: str) -> None:
+    path.write_text(text)
+    with pytest.raises(ValueError, match=f"three.urdf': {sentence}"):
+        from_urdf(str(path), "tip")
+
+
 def test_no_limits_or_zeros_are_none(path: Path) -> None:
     path.write_text(URDF.replace(LIMIT, ""))
     with pytest.warns(UserWarning, match="joint 'pitch' has no limits or 0 to 0"):
@@ -303,6 +318,13 @@ def test_no_limits_or_zeros_are_none(path: Path) -> None:
         (('"camera" type="fixed"', '"camera" type="floating"'), "joint 'camera' off the chain is floating and taken"),
         ((LIMIT, '<limit lower="-170" upper="170"/>'), "joint 'pitch' has the limits -170 to 170; they are in rad"),
         (('rpy="0 0.4 0"', 'rpy="0 90 0"'), "joint 'pitch' has the rpy 0 90 0; it is in rad, not in degrees"),
+        (('effort="9"', 'effort="0"'), "joint 'pitch' has the effort limit 0, which is taken for none$"),
+        (('value="2"/>' + MOMENTS, 'value="2"/>'), "link 'one' has no <inertia>, and is taken for a point mass"),
+        (
+            ("0.05 0.02 -0.01", "50 20 -10"),
+            "link 'one' has its centre of mass 36.5.* m from its joint; lengths are in m; link 'one' has",
+        ),
+        (('"0.2 0 0.1"', '"200 0 100"'), "joint 'mount' stands 223.607 m from what carries it; lengths are in m"),
         (('"0.1 0 0" rpy', '"100 0 0" rpy'), "joint 'pitch' stands 100 m from what carries it; lengths are in m"),
         (
             ('value="2"/>' + MOMENTS, 'value="2"/><inertia ixx="90" iyy="80" izz="70"/>'),
