@@ -28,6 +28,28 @@ _POSITIVE = re.compile(
 _NOT_NEGATIVE = re.compile(r"(^|_)(stiffness|damping|friction|noise|noise_std|delay|width|height|cutoff|tolerance)$")
 
 
+_COUNT = re.compile(r"(^|_)(samples|steps|substeps|count|repetitions|trials|iterations|generations|places|nodes)$")
+_STEP = re.compile(r"(^|_)(step|dt|control_period)$")
+MOST = 10_000_000  # steps of one simulation; what is recorded of them takes some gigabytes
+
+
+def check_sizes(config: Mapping[str, Any], times: Iterable[str], where: str) -> None:
+    """Refuse a time [s] of more steps than can be simulated and recorded, and a count beyond that.
+
+    times: keys of lengths of time; what is called a duration is one in any case."""
+    given = {key: value for key, value in leaves(config) if is_number(value)}
+    steps = {key: value for key, value in given.items() if _STEP.search(key) and value > 0}
+    least = min(steps, key=steps.__getitem__) if steps else ""
+    step, times = steps.get(least, 1e-3), {*times}
+    for key, value in given.items():
+        name = next((part for part in reversed(key.split(".")) if not part.isdigit()), key)
+        if _COUNT.search(name) and value > MOST:
+            raise refused(f"{where}.{key}", f"{value:g}", f"be {MOST} at most")
+        if (key in times or name == "duration") and value > MOST * step:
+            of = f" of {where}.{least} = {step:g} s" if least else ""
+            raise refused(f"{where}.{key}", f"{value:g}", f"be {MOST * step:g} s at most, {MOST} steps{of}")
+
+
 def check_values(config: Mapping[str, Any], where: str) -> None:
     """Refuse values outside their physical range, in one sentence that names key, value and range."""
     for key, value in leaves(config):
@@ -58,10 +80,13 @@ def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: st
         value = config[key]
         if isinstance(book, Mapping) and isinstance(value, Mapping):
             check_types(value, book, f"{where}.{key}")
+        if isinstance(book, Mapping) and (is_number(value) or isinstance(value, bool)):
+            raise refused(f"{where}.{key}", value, "hold keys with values, or be null")
         numbers = [is_number(item) for _, item in leaves(book)]
         if not isinstance(book, Mapping) and numbers and all(numbers):
-            if isinstance(value, Mapping):
-                raise refused(f"{where}.{key}", dict(value), "be a number")
+            alone = is_number(book) and (key == "duration" or _STEP.search(key))  # others may be a list, one a case
+            if isinstance(value, Mapping) or (alone and isinstance(value, list)):
+                raise refused(f"{where}.{key}", value, "be a number")
             for place, item in leaves(value):
                 quantity = _POSITIVE.search(key) or _NOT_NEGATIVE.search(key)
                 if not is_number(item) and (item is not None or quantity):

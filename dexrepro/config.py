@@ -82,12 +82,21 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
         if (key := getattr(cause, "full_key", None)) and "not in struct" in str(cause):
             known = _keys(inherited(raw))
             raise InputError(f"unknown key '{key}': {nearest(key, known)} (a new one: '+{key}=VALUE')") from error
+        if extra_dir and "Cannot merge" in str(cause):
+            for path in _own_files(overrides, extra_dir):
+                full = inherited(raw)
+                if clash := next(_clashes(read_config(path), {**full, **full.get("scene", {})}), ""):
+                    raise InputError(f"{path}: {clash}") from error
         raise InputError(one_line(cause)) from error
     except (yaml.YAMLError, ValueError, TypeError) as error:
         raise InputError(one_line(error.__cause__ or error)) from error
     if unknown := [key for key in composed if key not in shipped]:
         if not extra_dir:
             raise InputError(f"unknown key '{unknown[0]}': {nearest(unknown[0], shipped)}")
+        if chapter == chapters.OWN:
+            raise InputError(
+                f"a file in {extra_dir} sets '{unknown[0]}' beside the scene: leave out its line '# @package _global_'"
+            )
         raise InputError(
             f"a file in {extra_dir} sets '{unknown[0]}', which chapter {chapter} does not have: begin it with "
             "'# @package _global_' and name an experiment of the chapter"
@@ -126,15 +135,28 @@ def as_written(chapter: str) -> dict[str, Any]:
 
 def own_keys(overrides: Sequence[str], folder: str) -> list[str]:
     """Keys set by the files of a folder that overrides such as ``+own=compare`` choose."""
-    keys: list[str] = []
+    return [key for path in _own_files(overrides, folder) for key in read_config(path)]
+
+
+def _own_files(overrides: Sequence[str], folder: str) -> Iterator[Path]:
     for text in overrides:
         override = parsed(text)
         chosen = override.value() if override else None
         for option in chosen if isinstance(chosen, list) else [chosen]:
             path = Path(folder, override.key_or_group if override else "", f"{str(option).removesuffix('.yaml')}.yaml")
             if path.is_file():
-                keys += read_config(path)
-    return keys
+                yield path
+
+
+def _clashes(given: Mapping[str, Any], shipped: Mapping[str, Any], where: str = "") -> Iterator[str]:
+    """Keys of a file whose value is a list where keys with values are wanted, or the other way round, as sentences."""
+    for key, value in given.items():
+        book = shipped.get(key)
+        if isinstance(value, Mapping) and isinstance(book, Mapping):
+            yield from _clashes(value, book, f"{where}{key}.")
+        elif isinstance(value, Mapping | list) and isinstance(book, Mapping | list) and type(value) is not type(book):
+            must = "be a list" if isinstance(book, list) else "hold keys with values"
+            yield str(refused(f"{where}{key}", value, must))
 
 
 def read_config(path: Path) -> dict[str, Any]:
@@ -154,7 +176,7 @@ def read_config(path: Path) -> dict[str, Any]:
     except (yaml.YAMLError, OmegaConfBaseException, ValueError) as error:
         raise InputError(f"{path} is no YAML file: {one_line(error)}") from error
     if not isinstance(content, dict) or not content or not all(isinstance(key, str) for key in content):
-        raise InputError(f"{path} holds no keys: it must consist of lines such as 'only: EXPERIMENT'")
+        raise InputError(f"{path} holds no keys: it must consist of lines such as 'key: value'")
     return content
 
 

@@ -21,13 +21,23 @@ from typing import Any
 
 from dexrepro import chapters, closure
 from dexrepro.case import targets
-from dexrepro.checks import FILES, check_files, check_lengths, check_types, check_words, differences, leaves, same
+from dexrepro.checks import (
+    FILES,
+    check_files,
+    check_lengths,
+    check_sizes,
+    check_types,
+    check_words,
+    differences,
+    leaves,
+    same,
+)
 from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block
 from dexrepro.control.contract import KINDS, takes
 from dexrepro.errors import InputError, folder_named, nearest, refused
 from dexrepro.experiment import Experiment
 from dexrepro.physics.engine import REFERENCE, default
-from dexrepro.provenance import words_of
+from dexrepro.provenance import times_of, words_of
 from dexrepro.storage import digest_of
 
 NUMERICAL = ("numpy", "scipy")  # packages whose version can change a number, beside the engine
@@ -169,10 +179,15 @@ def _plan(
     cases, block = experiment_cases(config, name), resolved_block(config, name)
     for key in block:
         if key not in shipped[name]:
+            if key == name:
+                raise InputError(
+                    f"unknown key '{name}.{key}': what is below '{name}:' in the file stands there without"
+                )
             raise InputError(f"unknown key '{name}.{key}': {nearest(key, shipped[name])}")
     differs = [] if _as_shipped(config, shipped) else _differs(name, config, shipped, cases, block)
     for values in cases.values() if differs else ():
         check_words(values, words_of(chapter, name), name)
+        check_sizes(values, times_of(chapter, name), name)
     experiment, engine = chapters.load(chapter).experiment(name), str(config["engine"] or default())
     told = {"engine": engine} if uses_engine(experiment) and engine != REFERENCE else {}
     if engine != default() and uses_engine(experiment):

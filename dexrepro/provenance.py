@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
-from dexrepro.checks import leaves
+from dexrepro.checks import is_number, leaves
 from dexrepro.config import compose_chapter, config_files, resolved_block
 
 
@@ -148,6 +148,15 @@ def origin_of(
                 return replace(own, symbol=further.symbol, words=own.words or further.words), home
             return own or further, home
     return own, None
+
+
+@cache
+def times_of(chapter: str, experiment: str) -> frozenset[str]:
+    """Parameters of an experiment in seconds, by key within the experiment."""
+    composed, origins = compose_chapter(chapter), provenance(chapter)
+    found = {key: origin_of(f"{experiment}.{key}", composed, origins)[0]
+             for key, value in leaves(resolved_block(composed, experiment)) if is_number(value)}  # fmt: skip
+    return frozenset(key for key, origin in found.items() if origin and origin.unit == "s")
 
 
 @cache

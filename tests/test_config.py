@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import copy
 import re
 from pathlib import Path
 
 import pytest
 
 from dexrepro import chapters
-from dexrepro.checks import is_number, leaves, value_at
+from dexrepro.checks import check_sizes, is_number, leaves, set_value, value_at
 from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block, selecting
 from dexrepro.errors import InputError
 from dexrepro.interpolation import inherited, names_of
 from dexrepro.plan import plan_chapter
-from dexrepro.provenance import Provenance, commented_leaves, leaves_with_comments, parse_provenance, provenance
+from dexrepro.provenance import (
+    Provenance,
+    commented_leaves,
+    leaves_with_comments,
+    parse_provenance,
+    provenance,
+    times_of,
+)
 
 CHAPTERS = (*chapters.numbers(), chapters.OWN)
 
@@ -231,3 +239,19 @@ def test_what_a_word_cannot_set_is_said_by_its_whole_key(words: list[str], sente
 def test_results_may_be_in_a_folder_of_any_name() -> None:
     composed = compose_chapter("2", selecting(Path("it's [mine], too"), ["holding_line"]))
     assert (composed["results"], composed["only"]) == ("it's [mine], too", ["holding_line"])
+
+
+def test_no_length_of_time_or_count_of_any_experiment_makes_a_run_without_end() -> None:
+    for chapter in chapters.numbers():
+        composed = compose_chapter(chapter)
+        for experiment in chapters.load(chapter).experiments:
+            times = times_of(chapter, experiment.name)
+            for values in experiment_cases(composed, experiment.name).values():
+                check_sizes(values, times, experiment.name)
+                for key, value in leaves(values):
+                    last = key.rstrip(".0123456789").rpartition(".")[2]
+                    if is_number(value) and (last.endswith(("duration", "durations")) or last == "samples"):
+                        changed = copy.deepcopy(values)
+                        set_value(changed, key, 1e300)
+                        with pytest.raises(InputError, match=f"{experiment.name}.{key} = 1e.300 is not allowed"):
+                            check_sizes(changed, times, experiment.name)

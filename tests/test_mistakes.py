@@ -42,6 +42,16 @@ def result(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("decay.duration=null", "decay.duration = null is not allowed: it must be a number"),
         ("decay.start=false", "decay.start = False is not allowed: it must be a number"),
         ("decay.gains=[1,two]", "decay.gains.1 = 'two' is not allowed: it must be a number"),
+        (
+            "decay.duration=1e300",
+            "decay.duration = 1e+300 is not allowed: it must be 100000 s at most, 10000000 steps of",
+        ),
+        ("decay.pause=1e300", "decay.pause = 1e+300 is not allowed: it must be 100000 s at most"),
+        (
+            "decay.step=1e-30",
+            "decay.duration = 2 is not allowed: it must be 1e-23 s at most, 10000000 steps of decay.step",
+        ),
+        ("decay.step=[0.1,0.2]", "decay.step = [0.1, 0.2] is not allowed: it must be a number"),
         ("decay", "'decay' is not an override of the form key=value, such as"),
     ],
 )

@@ -254,6 +254,32 @@ def test_folders_and_files_have_the_names_that_people_give_them(
     assert len([*folder.glob("run (3), größe/runs/own-*/metrics.json")]) == 2
 
 
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("", "squeeze.yaml holds no keys: it must consist of lines such as 'key: value'"),
+        ("cases: [a, b]", "squeeze.yaml: cases = ['a', 'b'] is not allowed: it must hold keys with values"),
+        ("servo: [3]", "squeeze.yaml: servo = [3] is not allowed: it must hold keys with values"),
+        ("gravity: {z: 3}", "squeeze.yaml: gravity = {'z': 3} is not allowed: it must be a list"),
+        ("leader: 3", "scene.leader = 3 is not allowed: it must hold keys with values, or be null"),
+        ("# @package _global_\nduration: 3", "sets 'duration' beside the scene: leave out its line '# @pack"),
+        ("scene: {duration: 3}", "unknown key 'scene.scene': what is below 'scene:' in the file stands there without"),
+        ("duration: 0,5", "scene.duration = '0,5' is not allowed: it must be a number"),
+        ("duration: [1, 2]", "scene.duration = [1, 2] is not allowed: it must be a number"),
+        ("duration: 1e300", "scene.duration = 1e+300 is not allowed: it must be 10000 s at most, 10000000 steps of "
+                            "scene.step = 0.001 s"),
+        ("step: 1e-300", "scene.duration = 5 is not allowed: it must be 1e-293 s at most, 10000000 steps of scene"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_in_a_scenes_file_gets_one_sentence(
+    folder: Path, capsys: pytest.CaptureFixture[str], text: str, sentence: str
+) -> None:
+    (folder / "mine/scene").mkdir(parents=True)
+    (folder / "mine/scene/squeeze.yaml").write_text(text)
+    assert main(["run", "--config-dir", "mine", "+scene=squeeze", "workers=1"]) == 2
+    assert sentence in " ".join(capsys.readouterr().err.split())
+
+
 HOLDS = "joint_pd.JointPD, stiffness: 300, damping: 20"
 STILL = "{line: {start: [0.5, 0.1, 0], end: [0.5, 0.1, 0], period: 4}}"
 
