@@ -149,9 +149,11 @@ def _about_experiment(number: str, entry: dict[str, Any], asked: list[str], resu
         yield f"  result      {folder}"
     yield f"  cases       {', '.join(entry['cases'])}"
     _, metrics = _metrics(number, entry["name"], results)
-    for claim in chapters.load(number).claims_of(entry["name"]):
-        if asked and not any(relations.concerns(claim.figure, identifier) for identifier in asked):
-            continue
+    claims = chapters.load(number).claims_of(entry["name"])
+    about = [claim for claim in claims if any(relations.concerns(claim.figure, identifier) for identifier in asked)]
+    if asked and claims and not about:
+        yield f"  no claim names {', '.join(asked)}; the same runs decide:"
+    for claim in about or claims:
         found = claim.evaluate(metrics)
         yield f"  {claim.id:<10}  {found.verdict}{_margin(found.margin)}: {claim.statement}"
     if not asked:

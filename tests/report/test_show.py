@@ -32,7 +32,8 @@ def test_a_claim_is_shown_with_verdict_control_study_parameters_lines_and_comman
     [
         ("2.7", ["2.7  of chapter 2", "C2.08", "$ dexrepro run figure=2.7", "Equation (2.7)"]),
         ("1.16", ["C1.18", "C1.20"]),  # one of the figure, one of a panel
-        ("T2.1", ["T2.1  of chapter 2", "$ dexrepro run figure=T2.1"]),
+        ("T2.1", ["T2.1  of chapter 2", "no claim names T2.1; ", "C2.14  ", "$ dexrepro run figure=T2.1"]),
+        ("T6.1", ["C6.46", "C6.47"]),
         ("Eq. (2.32)", ["Equation (2.32), Sect. 2.3.3", r"\frac{1}{k}", "holding_reference.py:", "ImpedanceReference"]),
         ("k_o", ["movement_estimation.stiffness = k_o = [25, 35, 45] N/m  [printed 2.4.1.2]"]),
         ("movement_estimation.stiffness", ["k_o = [25, 35, 45] N/m"]),
