@@ -65,12 +65,14 @@ def selected(words: Iterable[str], command: str) -> Selection:
 
 
 def _with_claim(claim: str, numbers: list[str]) -> list[str]:
-    """The one of the chapters that has a claim; they as they are where none of them has it, which is said later."""
-    if found := [n for n in numbers if any(known.id == claim for known in chapters.load(n).claims)]:
-        return found
-    if found := [n for n in chapters.numbers() if any(known.id == claim for known in chapters.load(n).claims)]:
-        raise InputError(f"claim = {claim} is of chapter {found[0]}, not of {', '.join(numbers)}")
-    return numbers
+    """The one of the chapters that has a claim."""
+    owner = {known.id: number for number in chapters.numbers() for known in chapters.load(number).claims}
+    if claim not in owner:
+        near = [key for key, number in owner.items() if number in numbers]
+        raise InputError(f"unknown claim '{claim}': {nearest(claim, near)}")
+    if owner[claim] not in numbers:
+        raise InputError(f"claim = {claim} is of chapter {owner[claim]}, not of {', '.join(numbers)}")
+    return [owner[claim]]
 
 
 def listed(value: str) -> list[str]:

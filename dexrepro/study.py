@@ -62,6 +62,9 @@ def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list
             raise InputError(f"{', '.join(without)} of chapter {chapter}: there is no claim that a study could test")
         return [e.name for e in loaded.experiments if e.name in about and (not only or e.name in only)]
     if claim not in by_id:
+        for item in loaded.claims:
+            if item.id == claim:
+                raise InputError(f"claim = {claim} is not allowed: it is not testable: {item.not_testable}")
         raise InputError(f"unknown claim '{claim}' in chapter {chapter}: {nearest(claim, by_id)}")
     return [by_id[claim].experiment]
 

@@ -146,6 +146,7 @@ def test_a_result_that_cannot_be_drawn_is_named_and_stays(
         ("check workers=two", "workers = two is not allowed"),
         ("render case=plain", "of which experiment?"),
         ("study only=decai samples=1", "did you mean 'decay'?"),
+        ("study claim=C90.99", "unknown claim 'C90.99': did you mean 'C90.0"),
         ("study samples=0", "samples = 0 is not allowed: it must be a whole number of 1 or greater"),
         ("study samples=-3", "samples = -3 is not allowed"),
         ("study hours=nan", "hours = nan is not allowed: it must be a number greater than 0"),

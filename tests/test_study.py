@@ -353,6 +353,11 @@ def test_an_unknown_claim_is_refused(folder: Path) -> None:
         study.experiments_of("90", [], "C90.1")
 
 
+def test_a_claim_that_is_not_testable_is_refused_with_the_reason() -> None:
+    with pytest.raises(InputError, match=r"claim = C1.17 is not allowed: it is not testable: Fatigue"):
+        study.experiments_of("1", [], "C1.17")
+
+
 @pytest.mark.slow
 def test_a_study_in_a_checkout_changes_no_tracked_file(tmp_path: Path) -> None:
     git = ["git", "-C", str(tmp_path), "-c", "user.name=test", "-c", "user.email=test"]
