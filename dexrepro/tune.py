@@ -10,6 +10,7 @@ from __future__ import annotations
 import copy
 import importlib
 import inspect
+import math
 import os
 import re
 import zlib
@@ -41,6 +42,8 @@ from dexrepro.study import within
 
 ROUNDS, SHRINK = 4, 0.4  # boxes around the best, each this share as wide as the one before
 EDGE = 0.02  # share of a range that counts as its edge
+NO_BETTER = "no run is better than the case as it stands"
+ALIKE = "every run gives the same: what was searched does not change this metric"
 Range = tuple[float, float]
 
 
@@ -108,7 +111,7 @@ class Found:
     chosen: dict[str, float]
     runs: int
     failed: int
-    edges: list[str]  # sentences: parameters whose best lies at the edge of the range, or why there is none
+    edges: list[str]  # sentences: parameters whose best lies at the edge of the range, or why nothing is better
 
 
 def search_of(
@@ -132,6 +135,14 @@ def search_of(
     ranges, guessed = (ranges, False) if ranges else _of_laws(values, declared, composed[experiment])
     listed = name not in (composed[experiment].get("cases") or {"default": {}})
     return Search(numbers[0], experiment, name, values, ranges, metric, sign, composed["seed"], listed, guessed)
+
+
+def numbers_of(search: Search) -> list[str]:
+    """Keys of the case's parameters that are numbers, those with a declared range first."""
+    declared = _declared(search.chapter, search.experiment, compose_chapter(search.chapter))
+    return sorted(
+        (key for key, value in leaves(search.values) if is_number(value)), key=lambda key: key not in declared
+    )
 
 
 def _declared(chapter: str, experiment: str, composed: Mapping[str, Any]) -> dict[str, Range]:
@@ -292,15 +303,20 @@ def _found(search: Search, rows: Sequence[Mapping[str, Any]]) -> Found:
     if not valid:
         why = rows[0].get("error", "undefined")
         return Found(None, None, {}, len(rows), len(rows), [f"no run gave '{search.metric}'; the first: {why}"])
-    best = min(valid, key=lambda row: search.sign * row["value"])
+    best, start = min(valid, key=lambda row: search.sign * row["value"]), rows[0]["value"]
+    if start is not None and math.isclose(best["value"], start, rel_tol=1e-9):
+        best = rows[0]
     edges = []
+    if best is rows[0] and len(rows) > 1:
+        alike = all(math.isclose(row["value"], start, rel_tol=1e-9) for row in valid)
+        edges = [ALIKE if alike else NO_BETTER]
     for share, (key, (low, high)) in zip(best["point"] or (), search.ranges.items()):
         if min(share, 1 - share) < EDGE:
             side = "lower" if share < EDGE else "upper"
             what = f"beyond or at the {side} end of the guess" if search.guessed else f"at the {side} edge of"
             edges.append(f"{key} = {best['parameters'][key]:g} lies {what} {low:g}..{high:g}: widen it")
     failed = len(rows) - len(valid)
-    return Found(rows[0]["value"], best["value"], dict(best["parameters"]), len(rows), failed, edges)
+    return Found(start, best["value"], dict(best["parameters"]), len(rows), failed, edges)
 
 
 # -------------------------------------------------------------------------------------------------- laws of a folder
@@ -377,22 +393,27 @@ def joined(search: Search, target: str, law: type) -> Search | None:
 
 
 def leaderboard(
-    cases: Sequence[str], laws: Mapping[str, type], metrics: Sequence[str], sign: int, tuned: Callable[[Search], Found]
-) -> list[dict[str, Any]]:
+    cases: Sequence[str], laws: Mapping[str, type], metrics: Sequence[str], sign: int, tuned: Callable[[Search], Found],
+    overrides: Sequence[str] = (),
+) -> list[dict[str, Any]]:  # fmt: skip
     """The laws beside those of the cases named, each ``tuned`` alike; rows by comparison, the best first.
 
     metrics: one for all experiments, or one each. In each experiment the laws take the place of the law of the first
-    case named.
+    case named. overrides: other values throughout; each experiment has its own and those of no experiment named.
     """
     names = list(dict.fromkeys(case.partition(".")[0] for case in cases))
     if len(metrics) not in (1, len(names)):
         raise InputError(f"{','.join(metrics)} is not allowed: give one metric, or one each for {', '.join(names)}")
     metric = dict(zip(names, [*metrics] * (len(names) if len(metrics) == 1 else 1)))
-    searches = [search_of(case, metric[case.partition(".")[0]], sign) for case in cases]
+    searches = []
+    for case in cases:
+        others = {f"{name}." for name in names if not case.startswith(f"{name}.")}
+        own = [word for word in overrides if not word.lstrip("+~").startswith((*others,))]
+        searches.append(search_of(case, metric[case.partition(".")[0]], sign, (), own))
     contexts = {search.experiment: search for search in reversed(searches)}
-    own = [joined(context, *law) for context in contexts.values() for law in laws.items()]
+    yours = [joined(context, *law) for context in contexts.values() for law in laws.items()]
     rows = []
-    for search in [*searches, *(search for search in own if search)]:
+    for search in [*searches, *(search for search in yours if search)]:
         try:
             found = tuned(search)
         except InputError as error:

@@ -40,6 +40,13 @@ def test_a_best_at_the_edge_of_its_range_is_said(toy):
     assert "upper edge of 0.5..1.2" in found.edges[0]
 
 
+def test_where_nothing_is_better_that_is_said_and_whether_what_was_searched_matters(toy):
+    found, _ = bowl(8, ranges={"start": (2.0, 3.0)})
+    assert (found.chosen, found.edges) == ({}, [tune.NO_BETTER])
+    found, _ = bowl(8, ranges={"gain": (2.0, 3.0)})
+    assert (found.chosen, found.edges) == ({}, [tune.ALIKE])
+
+
 def test_a_guessed_range_is_left_where_the_best_lies_beyond_it(toy):
     given, _ = bowl(24, ranges={"start": (0.25, 1.1)})
     found, path = bowl(24, ranges={"start": (0.25, 1.1)}, guessed=True)
@@ -90,7 +97,8 @@ def test_words_that_are_missing_or_wrong_are_one_sentence(toy, command):
         "tune minimise=final": "case= is missing",
         "tune case=decay.plain": "give minimise=METRIC or maximise=METRIC",
         "tune case=decay.plain minimise=final budget=1": "budget = 1 is not allowed",
-        "tune case=decay.plain minimise=final": "declares a range; name some",
+        "tune case=decay.plain minimise=final": "declares a range; name some, as KEY=LOW..HIGH: start, ",
+        "compare case=decay.plain minimise=final laws=. other.gain=2": "'other.gain=2' has no meaning here",
         "compare case=decay.plain minimise=final laws=nowhere": "there is no such folder",
     }.items():
         code, text = command(words)
@@ -132,6 +140,25 @@ def test_laws_of_a_folder_stand_beside_the_books_where_their_kind_fits(tmp_path,
     assert law["_target_"] == "laws_of_a_folder.Mine"
     assert (law["desired_force"], law["dt"]) == (1.0, mine.values["step"])
     assert "limit" not in law
+
+
+def test_what_is_overridden_holds_for_the_laws_of_both_sides(tmp_path, monkeypatch):
+    (tmp_path / "laws_of_another_folder.py").write_text(LAW)
+    monkeypatch.syspath_prepend(tmp_path)
+    searches = []
+
+    def tuned(search):
+        searches.append(search)
+        return tune.Found(2.0, 1.0, {}, 8, 0, [])
+
+    words = ["holding_comparison.step=0.002", "force_tracking.step=0.004"]
+    cases = ["holding_comparison.s4", "force_tracking.c1_force"]
+    tune.leaderboard(cases, tune.laws_in(tmp_path), ["rmse"], 1, tuned, words)
+    steps = {(search.experiment, search.case): search.values["step"] for search in searches}
+    assert steps == {
+        ("holding_comparison", "s4"): 0.002, ("holding_comparison", "Mine"): 0.002,
+        ("force_tracking", "c1_force"): 0.004, ("force_tracking", "Mine"): 0.004,
+    }  # fmt: skip
 
 
 PLAIN = """

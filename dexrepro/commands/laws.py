@@ -10,15 +10,16 @@ from typing import Any
 
 from rich.table import Table
 
-from dexrepro.commands import OK, command, option, out, say
+from dexrepro.commands import OK, SHOWN, command, option, out, say
 from dexrepro.errors import InputError, folder_named, whole_number
+
+GIVEN = "\n  EXPERIMENT.key=value    what shall be another value throughout, as for dexrepro run"
 
 
 @command(
     "search a case's parameters for the best value of a metric",
     ("case", "minimise", "maximise", "budget", "results", "workers"),
-    more="\n  law.KEY=LOW..HIGH       a parameter to search; else those of the law that declare a range"
-    "\n  EXPERIMENT.key=value    what shall be another value throughout, as for dexrepro run",
+    more="\n  law.KEY=LOW..HIGH       a parameter to search; else those of the law that declare a range" + GIVEN,
 )  # fmt: skip
 def tune_command(options: argparse.Namespace) -> int:
     """``dexrepro tune case=EXPERIMENT.CASE minimise=METRIC budget=N [law.gain=0.01..0.1 …]``."""
@@ -27,11 +28,13 @@ def tune_command(options: argparse.Namespace) -> int:
 
     known, rest = _search_words(options.selection, "tune")
     experiment = known["case"].partition(".")[0]
-    overrides = [quoted(word) for word in rest if re.match(rf"[+~]|seed=|shared\.|{re.escape(experiment)}\.", word)]
-    parameters = [word for word in rest if quoted(word) not in overrides]
-    search = tune.search_of(known["case"], known["metric"], known["sign"], parameters, overrides)
+    given, parameters = _given(rest, [experiment])
+    search = tune.search_of(known["case"], known["metric"], known["sign"], parameters, [*map(quoted, given)])
     if not search.ranges:
-        raise InputError(f"{search.name}: no parameter of its law declares a range; name some: law.gain=0.01..0.1")
+        some = ", ".join(tune.numbers_of(search)[:SHOWN]) or "none of its parameters is a number"
+        raise InputError(
+            f"{search.name}: no parameter of its law declares a range; name some, as KEY=LOW..HIGH: {some}"
+        )
     found, path = tune.run(search, known["budget"], known["results"], known["workers"], say)
     if found.best is None:
         raise InputError(f"{search.name}: {found.edges[0]}")
@@ -43,39 +46,50 @@ def tune_command(options: argparse.Namespace) -> int:
         say(edge)
     say(f"stored in {path}")
     if found.chosen:
-        given = [f"'{word}'" for word in rest if word not in parameters]
-        run = f"dexrepro run{chapters.option(search.chapter)}"
-        say(" ".join([run, f"only={experiment} case={search.case}", *given, search.override(found.chosen)]))
+        run = f"dexrepro run{chapters.option(search.chapter)} only={experiment} case={search.case}"
+        say(" ".join([run, *(f"'{word}'" for word in given), search.override(found.chosen)]))
     return OK
 
 
 @command(
     "the laws of a folder beside the book's, tuned alike",
-    ("laws", "case", "minimise", "maximise", "budget", "results", "workers"),
+    ("laws", "case", "minimise", "maximise", "budget", "results", "workers"), more=GIVEN,
 )  # fmt: skip
 def compare_command(options: argparse.Namespace) -> int:
-    """``dexrepro compare laws=FOLDER case=EXPERIMENT.CASE,… minimise=METRIC budget=N``."""
+    """``dexrepro compare laws=FOLDER case=EXPERIMENT.CASE,… minimise=METRIC budget=N [EXPERIMENT.key=value …]``."""
     import pandas as pd
 
     from dexrepro import tune
+    from dexrepro.selection import quoted
+    from dexrepro.storage import digest_of
 
     known, rest = _search_words(options.selection, "compare", "laws")
-    if rest:
-        raise InputError(f"'{rest[0]}' has no meaning here; see: dexrepro compare --help")
-    laws = tune.laws_in(known["laws"], say)
     results, names = known["results"], known["case"].split(",")
+    experiments = list(dict.fromkeys(name.partition(".")[0] for name in names))
+    given, other = _given(rest, experiments)
+    if other:
+        raise InputError(f"'{other[0]}' has no meaning here; see: dexrepro compare --help")
     rows = tune.leaderboard(
-        names, laws, known["metric"].split(","), known["sign"],
+        names, tune.laws_in(known["laws"], say), known["metric"].split(","), known["sign"],
         lambda search: tune.run(search, known["budget"], results, known["workers"], say)[0],
+        [*map(quoted, given)],
     )  # fmt: skip
-    shown = Table(*rows[0], title=f"{known['budget']} runs each", box=None, pad_edge=False)
+    shown = Table(*rows[0], title=", ".join([f"{known['budget']} runs each", *given]), box=None, pad_edge=False)
     for row in rows:
         shown.add_row(*(f"{value:.4g}" if isinstance(value, float) else str(value or "") for value in row.values()))
     out.print(shown)
-    path = results / "tuning" / f"leaderboard-{'-'.join(dict.fromkeys(name.partition('.')[0] for name in names))}.csv"
+    changed = [digest_of(given)[:10]] if given else []
+    path = results / "tuning" / f"{'-'.join(['leaderboard', *experiments, *changed])}.csv"
     pd.DataFrame(rows).to_csv(path, index=False)
     say(f"stored in {path}")
     return OK
+
+
+def _given(words: Sequence[str], experiments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Those of the words that override values of the experiments, and the other words."""
+    own = re.compile(rf"[+~]|seed=|shared\.|({'|'.join(map(re.escape, experiments))})\.")
+    given = [word for word in words if own.match(word)]
+    return given, [word for word in words if word not in given]
 
 
 def _search_words(words: Sequence[str], command: str, *needed: str) -> tuple[dict[str, Any], list[str]]:
