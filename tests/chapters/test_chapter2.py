@@ -18,6 +18,7 @@ from dexrepro.chapters.chapter2.balloon_static.figures import _off
 from dexrepro.chapters.chapter2.holding_line import experiment as holding_line
 from dexrepro.chapters.chapter2.holding_sensitivity.experiment import margins_of
 from dexrepro.chapters.chapter2.movement_estimation import experiment as movement_estimation
+from dexrepro.chapters.chapter2.movement_estimation.figures import _of_one_period
 from dexrepro.experiment import Config
 from dexrepro.plan import plan_chapter
 
@@ -170,3 +171,17 @@ def test_a_shared_value_is_named_beside_other_overrides() -> None:
     given = ["shared.fixed.displacement=-0.2", "hold_and_move.object.mass=0.4", "only=hold_and_move"]
     plans, _ = plan_chapter("1", given, write=False)
     assert plans[0].differs == ["object.mass=0.4 (book: 0.3)", "t1_fixed.law.displacement=-0.2 (book: -0.15)"]
+
+
+def test_fig_2_6_shows_one_case_for_each_stiffness_at_one_period_and_fig_2_7_the_others() -> None:
+    def split(period: list[int], **cases: tuple[float, float]) -> list[str]:
+        config = Config.of(
+            {"period": period, "cases": {k: {"stiffness": c, "period": p} for k, (c, p) in cases.items()}}
+        )
+        return _of_one_period(list(cases), config)
+
+    forces, estimates = {"k25": (25, 20), "k35": (35, 20)}, {"sigma10": (35, 10), "sigma30": (35, 30)}
+    assert split([10, 30], **forces, **estimates, mine=(35, 5)) == ["k25", "k35"]
+    assert split([20, 30], **forces, sigma20=(35, 20), sigma30=(35, 30)) == ["k25", "k35"]
+    assert split([10, 30], k35=(35, 20), **estimates) == ["k35"]
+    assert split([10, 30], **estimates) == split([10, 30]) == []
