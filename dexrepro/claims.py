@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
+import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from types import MappingProxyType
@@ -378,6 +379,11 @@ class Erratum:
     def __post_init__(self) -> None:
         if self.kind not in ERRATUM_KINDS:
             raise ValueError(f"{self.id}: kind '{self.kind}' is none of {', '.join(ERRATUM_KINDS)}")
+
+    @property
+    def typed(self) -> str:
+        """The switch as it is typed in a shell."""
+        return shlex.join(self.switch.split())
 
 
 def _of_kind(kind: str) -> Callable[..., Erratum]:

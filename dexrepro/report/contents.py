@@ -182,7 +182,7 @@ class Contents:
         evidence = [(name, self.metrics.get(name)) for name in item.evidence]
         numbers = {**self.settings, **self.metrics}
         return {
-            **vars(item), "evidence": evidence,
+            **vars(item), "switch": item.typed, "evidence": evidence,
             "summary": filled(item.summary, numbers), "correction": filled(item.correction, numbers),
             "equations": equations.numbers(item.equation),
             "line": self._line(item.id), "chapter": self.number,

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 from dexrepro import baselines, chapters, study
-from dexrepro.claims import Claim, Erratum
+from dexrepro.claims import Claim, Erratum, filled
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
 from dexrepro.errors import InputError, nearest
 from dexrepro.plan import matches
@@ -85,10 +85,11 @@ def _about_claim(number: str, claim: Claim, results: Path) -> Iterator[str]:
         yield f"  reading     {text}{_margin(margin)}"
     for label in ("searched", "by_construction", "note"):
         if shown[label]:
-            yield f"  {label.replace('_', ' '):<12}{shown[label]}"
+            yield f"  {label.replace('_', ' '):<11} {shown[label]}"
     errata = relations.errata_of(claim, chapter.errata, composed)
+    numbers = _numbers(number, chapters.names(number), results) if errata else {}
     for erratum in errata:
-        yield f"  erratum     {erratum.id} {erratum.equation}: {erratum.summary}"
+        yield f"  erratum     {erratum.id} {erratum.equation}: {filled(erratum.summary, numbers)}"
     texts = " ".join([claim.statement, shown["note"], claim.where, *(erratum.equation for erratum in errata)])
     if mentioned := equations.numbers(texts):
         yield f"  equations   {', '.join(f'({equation})' for equation in mentioned)}"
@@ -117,6 +118,14 @@ def _metrics(number: str, name: str, results: Path) -> tuple[str, dict[str, Any]
     return "as stored with dexrepro", baselines.Baseline.of(number, name).values
 
 
+def _numbers(number: str, names: Iterable[str], results: Path) -> dict[str, Any]:
+    """Parameters and metrics of experiments, as texts name them."""
+    composed, found = compose_chapter(number), dict[str, Any]()
+    for name in names:
+        found |= settings(composed, name) | _metrics(number, name, results)[1]
+    return found
+
+
 def _margin(value: float | None) -> str:
     return "" if value is None else f", margin {value:+.3g}"
 
@@ -141,9 +150,10 @@ def _made(word: str, results: Path) -> Iterator[str]:
 def _about_experiment(number: str, entry: dict[str, Any], asked: list[str], results: Path) -> Iterator[str]:
     experiment = chapters.load(number).experiment(entry["name"])
     yield f"{', '.join(asked) or entry['name']}  of chapter {number}: {entry['summary']}"
-    for identifier in asked or (*entry["figures"], *entry["tables"]):
-        figure = experiment.figures.get(identifier)
-        yield f"  {identifier:<10}  {figure.caption if figure else experiment.tables[identifier]}"
+    texts = {**{name: figure.caption for name, figure in experiment.figures.items()}, **experiment.tables}
+    numbers = _numbers(number, [experiment.name], results)
+    for identifier in asked or texts:
+        yield f"  {identifier:<10}  {filled(texts[identifier], numbers)}"
     folder = results / f"chapter{number}" / entry["name"]
     if folder.exists():
         yield f"  result      {folder}"
@@ -174,9 +184,10 @@ def _erratum(word: str, results: Path) -> Iterator[str]:
 
 def _about_erratum(number: str, erratum: Erratum, results: Path) -> Iterator[str]:
     yield f"{erratum.id}  {erratum.kind} in {erratum.equation}"
-    yield f"  {erratum.summary}"
+    numbers = _numbers(number, chapters.names(number), results)
+    yield f"  {filled(erratum.summary, numbers)}"
     if erratum.correction:
-        yield f"  correction  {erratum.correction}"
+        yield f"  correction  {filled(erratum.correction, numbers)}"
     for name in erratum.evidence:
         value = _metrics(number, name.partition(".")[0], results)[1].get(name)
         yield f"  shown by    {name} = {_number(value)}"
@@ -185,7 +196,7 @@ def _about_erratum(number: str, erratum: Erratum, results: Path) -> Iterator[str
         yield f"  touches     {', '.join(touching)}"
     yield from _written(number, erratum.id)
     if erratum.switch:
-        yield f"  $ dexrepro run{chapters.option(number)} chapter={number} {erratum.switch}"
+        yield f"  $ dexrepro run{chapters.option(number)} chapter={number} {erratum.typed}"
 
 
 # ------------------------------------------------------------------------------- equations, symbols, parameters, laws

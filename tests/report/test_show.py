@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -42,11 +43,14 @@ def test_a_claim_is_shown_with_verdict_control_study_parameters_lines_and_comman
         ("ImpedanceReference", ["Eq. (2.32)", "used by ", "holding_comparison"]),
         ("movement_estimation", ["cases ", "parameter ", "C2.11", "2.7  "]),
         ("E2.01", ["E2.01", "written in"]),
+        ("2.10", ["balloon as a spring of 150 N/m"]),  # texts are filled with numbers
+        ("E8.03", ["E8.03  reading", "supply 0.", "chapter=8 'circle_tracking.networks.rates=[1,1,1]'"]),
     ],
 )
 def test_a_word_is_found_whatever_kind_of_thing_it_names(word: str, parts: list[str]) -> None:
     text = said(word)
     assert all(part in text for part in parts), text
+    assert not re.search(r"\{\w+(\.\w+)+(:[^{}]*)?\}", text.replace("${", "")), text
 
 
 def test_an_equation_alone_is_no_figure() -> None:

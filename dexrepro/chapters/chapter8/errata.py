@@ -32,7 +32,7 @@ ERRATA = (
         "{circle_tracking.broad_unit.network_force:.2g} N, with tuned rates {circle_tracking.broad.network_force:.2g} "
         "N. (8.36) is consistent with rate 1; rates may be unprinted.",
         "Rates Gamma, given beside the printed 1.",
-        "'circle_tracking.networks.rates=[1,1,1]'",
+        "circle_tracking.networks.rates=[1,1,1]",
         (
             f"{CIRCLE}.broad_unit.network_force",
             f"{CIRCLE}.broad.network_force",
