@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from dexrepro.chapters.chapter1.statements import TRIALS
 from dexrepro.claims import Claim, Predicate, Reference, about, every, less
-
-TRIALS = ("t1", "t2", "t3")
 
 
 def _holding(metric: str, first: str, second: str) -> Predicate:

@@ -15,9 +15,9 @@ import numpy as np
 from scipy import signal
 
 from dexrepro.arrays import Rng
-from dexrepro.chapters.chapter1.hold_and_move.claims import PRINTED
 from dexrepro.chapters.chapter1.hold_path import HoldPath, hold_path
 from dexrepro.chapters.chapter1.pair import ALONG, BALL, FLIP, SIDES, TABLE, add_arms, joint_channels, servos
+from dexrepro.chapters.chapter1.statements import TRIALS
 from dexrepro.control.facing import facing
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.measures import angle_between, last_outside, rms
@@ -193,7 +193,7 @@ def measure(recording: Recording, config: Config) -> Metrics:
 def summarise(metrics: AllMetrics, config: Config) -> Metrics:
     ratios: Metrics = {}
     for other in ("passive", "fixed"):
-        for trial in PRINTED:
+        for trial in TRIALS:
             own, rival = (metrics.get(f"{trial}_{law}", {}).get("rmse") for law in ("proposed", other))
             if own and rival:
                 ratios[f"{other}_ratio_{trial}"] = rival / own
