@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from dexrepro.storage import Result
+    from dexrepro.result import Result
 
 try:
     __version__ = version("dexrepro")
@@ -30,9 +30,9 @@ def run(chapter: int | str, overrides: list[str] | None = None, **settings: Any)
     """
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import of_session
+    from dexrepro.result import Result, Results
     from dexrepro.runner import run_plans
     from dexrepro.selection import quoted
-    from dexrepro.storage import Result, Results
 
     workers, force = settings.pop("workers", None), settings.pop("force", False)
     given = [f"{key}={_text(value)}" for key, value in settings.items()]
@@ -45,7 +45,7 @@ def run(chapter: int | str, overrides: list[str] | None = None, **settings: Any)
 
 def load(folder: str | Path) -> Result:
     """A result from its folder, for example ``results/chapter2/movement_estimation``."""
-    from dexrepro.storage import Result
+    from dexrepro.result import Result
 
     return Result(Path(folder))
 

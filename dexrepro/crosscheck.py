@@ -21,7 +21,8 @@ from dexrepro.config import selecting
 from dexrepro.errors import InputError, one_line
 from dexrepro.plan import Plan, plan_chapter, uses_engine
 from dexrepro.progress import Silent
-from dexrepro.runner import flat, run_plans
+from dexrepro.result import flat
+from dexrepro.runner import run_plans
 from dexrepro.storage import read_json, require, write_json
 
 OTHER = "mujoco"

@@ -309,7 +309,7 @@ def presentation(experiment: Experiment) -> str:
     """Hash of the code that makes claims, tables and figures of the numbers of an experiment."""
     roots = [(f"{experiment.package}.{part}", "") for part in ("figures", "claims")]
     roots += [(f"{experiment.package}.experiment", "summarise"), ("dexrepro.report.style", "")]
-    return closure.digest([*roots, *(("dexrepro.runner", name) for name in ("present", "summarise", "flat"))])
+    return closure.digest([*roots, *(("dexrepro.result", name) for name in ("present", "summarise", "flat"))])
 
 
 def outdated(plan: Plan, run: Mapping[str, Any]) -> str:

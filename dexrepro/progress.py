@@ -11,7 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from rich.progress import Progress as RichProgress
 
 if TYPE_CHECKING:
-    from dexrepro.runner import CaseEntry
+    from dexrepro.result import CaseEntry
 
 
 class Silent:

@@ -1,4 +1,4 @@
-"""From plans to files: run the cases that the cache lacks in one pool, assemble whole results."""
+"""From plans to results: run the cases that the cache lacks in one pool, assemble whole result folders."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import time
 import warnings
 import zlib
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
 from importlib.metadata import version
@@ -23,19 +23,18 @@ from typing import Any
 from dexrepro import __version__, chapters
 from dexrepro.case import live, targets
 from dexrepro.case import run as run_case
-from dexrepro.checks import differences, leaves
+from dexrepro.checks import differences
 from dexrepro.errors import COMPLETES, InputError, one_line
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
-from dexrepro.plan import PARTIAL, Job, Plan, check_own, import_anew, outdated, own_digest, presentation
+from dexrepro.plan import Job, Plan, check_own, import_anew, outdated, own_digest
 from dexrepro.pool import Failure, Pool, start_method
 from dexrepro.progress import Silent
+from dexrepro.result import CaseEntry, RunEntry, flat, present, redraw
 from dexrepro.storage import (
     claimed,
     copy,
-    finite,
     locked,
     read_json,
-    read_yaml,
     remove_leftovers,
     sync,
     whole_folder,
@@ -48,7 +47,6 @@ PACKAGES = ("pandas", "matplotlib", "hydra-core")  # beside those that can chang
 log = logging.getLogger(__name__)
 NO_NUMBER = "the law "  # how a status begins that says which law gave no number, when, and what instead
 SHOWN = 6  # differences that are named
-SUMMARY = "summary"  # stands for the numbers over several cases in nested metrics
 KEPT, RECENT = 6, 7 * 24 * 3600  # cached results a case: so many, and all of the last seconds (a sweep may need them)
 
 
@@ -75,47 +73,6 @@ class Outcome:
         for name, sentence in {**self.failures, **self.unusable}.items():
             found.setdefault(sentence, []).append(name)
         return found
-
-
-@dataclass(frozen=True)
-class CaseEntry:
-    """What run.json says of a case: how it ended, steps, simulated time [s], wall time [s] and their quotient.
-
-    warnings: what the user's files made doubtful, above all.
-    """
-
-    status: str
-    steps: int
-    simulated: float
-    wall: float
-    real_time_factor: float | None
-    warnings: list[str] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
-class RunEntry:
-    """run.json: what was run, with what code and packages, on what machine, and how long it took.
-
-    contents: what each case is made of; presentation: the code that drew it (see ``plan``); series: their files.
-    """
-
-    chapter: str
-    experiment: str
-    version: str
-    revision: str | None
-    seed: int
-    contents: dict[str, str]
-    presentation: str
-    differs: list[str]
-    series: list[str]
-    packages: dict[str, str]
-    machine: str
-    python: str
-    wall: float
-    steps: int
-    simulated: float
-    real_time_factor: float | None
-    cases: dict[str, CaseEntry]
 
 
 # --------------------------------------------------------------------------------------------------------- running
@@ -247,90 +204,6 @@ def _keep_own(old: Path, new: Path) -> None:
             shutil.copytree(path, new / path.name, symlinks=True, copy_function=copy)
         elif path.is_file() and not (new / path.name).exists():
             copy(path, new / path.name)
-
-
-def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config) -> None:
-    """Add the numbers over several cases to nested metrics."""
-    if function := experiment.function("summarise"):
-        nested[SUMMARY] = finite(function(nested, config))
-
-
-@contextlib.contextmanager
-def _lenient(differs: Sequence[str]) -> Iterator[None]:
-    """Let pass what fails for want of the other cases, in a result of some alone."""
-    try:
-        yield
-    except Exception:
-        if not _of_some_cases(differs):
-            raise
-
-
-def _of_some_cases(differs: Sequence[str]) -> bool:
-    return any(text.startswith(PARTIAL) for text in differs)
-
-
-def recorded(
-    experiment: Experiment, folder: Path
-) -> tuple[dict[str, Recording], dict[str, Metrics], Config, list[str]]:
-    """What a result's files hold: recordings and metrics by case, those over several cases, values, what differs."""
-    from dexrepro.recordings import load_recording
-
-    run = read_json(folder / "run.json")
-    config = Config.of(read_yaml(folder / "config.yaml"))
-    nested: dict[str, Metrics] = {case: {} for case in run["cases"]}
-    for name, value in read_json(folder / "metrics.json").items():
-        _, first, *rest = name.split(".", 2)
-        if rest and first in nested:
-            nested[first][rest[0]] = value
-    if not _of_some_cases(run["differs"]):  # a number over the cases is one over all of them
-        summarise(experiment, nested, config)
-    recordings = {
-        case: load_recording(folder / "series", case, entry["status"]) for case, entry in run["cases"].items()
-    }
-    return recordings, nested, config, run["differs"]
-
-
-def present(chapter: str, experiment: Experiment, folder: Path) -> None:
-    """Numbers over several cases, claims, tables and figures of a result folder, from its files alone."""
-    from dexrepro.report import style
-
-    recordings, nested, config, differs = recorded(experiment, folder)
-    flat_metrics = flat(experiment.name, nested)
-    write_json(folder / "metrics.json", flat_metrics)
-    settings = dict(leaves({experiment.name: config}))
-    about = chapters.load(chapter).claims_of(experiment.name)
-    claims = [claim.evaluate(flat_metrics, settings).as_dict() for claim in about]
-    write_json(folder / "claims.json", claims)
-    for name in ("tables", "figures"):
-        shutil.rmtree(folder / name, ignore_errors=True)
-        (folder / name).mkdir()
-    if tabulate := experiment.function("tabulate"):
-        with _lenient(differs):
-            for identifier, table in tabulate(recordings, nested, config).items():
-                if len(table.columns):  # of some cases there may be nothing to tell
-                    table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
-    if draw := experiment.function("draw"):
-        with style.style(), _lenient(differs):
-            for identifier, figure in draw(recordings, nested, config).items():
-                style.save(figure, folder / "figures", identifier)
-
-
-def redraw(chapter: str, name: str, target: Path) -> None:
-    """Present again a result from its files alone; where that fails, it stays as it was."""
-    experiment = chapters.load(chapter).experiment(name)
-    with whole_folder(target) as folder:
-        shutil.copytree(target, folder, dirs_exist_ok=True, copy_function=copy)
-        write_json(folder / "run.json", read_json(target / "run.json") | {"presentation": presentation(experiment)})
-        present(chapter, experiment, folder)
-
-
-def flat(experiment: str, nested: Mapping[str, Metrics]) -> Metrics:
-    """``experiment.case.metric`` and, for numbers over several cases, ``experiment.metric``."""
-    return {
-        f"{experiment}.{name}" if case == SUMMARY else f"{experiment}.{case}.{name}": value
-        for case, metrics in nested.items()
-        for name, value in metrics.items()
-    }
 
 
 def _run_entry(plan: Plan, entries: dict[str, CaseEntry], series: list[str]) -> RunEntry:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import base64
 import contextlib
 import errno
 import hashlib
-import html
 import json
 import math
 import os
@@ -15,16 +13,11 @@ import shutil
 import uuid
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 import yaml
 from filelock import FileLock, Timeout
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from dexrepro.experiment import Recording
 
 LARGEST = 1 << 26  # bytes of a text that is read
 _PART = re.compile(r"\.(?P<target>.+)-[0-9a-f]{12}\.part")
@@ -227,65 +220,3 @@ def finite(data: Any) -> Any:
 def digest_of(data: Any) -> str:
     """A hash that changes with any value in the data."""
     return hashlib.sha1(json.dumps(finite(data), sort_keys=True, default=str).encode()).hexdigest()
-
-
-# --------------------------------------------------------------------------------------------------------- results
-
-
-class Result:
-    """One result folder, read when asked: metrics, claims, run (provenance), recordings, tables, figures.
-
-    Raises FileNotFoundError where the folder holds no result.
-    """
-
-    def __init__(self, folder: Path) -> None:
-        if not (folder / "run.json").exists():
-            raise FileNotFoundError(f"{folder} holds no result (no run.json)")
-        self.folder = folder
-        self.run: dict[str, Any] = read_json(folder / "run.json")
-        self.metrics: dict[str, float | None] = read_json(folder / "metrics.json")
-        self.claims: list[dict[str, Any]] = read_json(folder / "claims.json")
-
-    def recording(self, case: str) -> Recording:
-        """Series, frames and images of one case, at the rate kept on disk."""
-        from dexrepro.recordings import load_recording
-
-        return load_recording(self.folder / "series", case, self.run["cases"][case]["status"])
-
-    @property
-    def tables(self) -> dict[str, pd.DataFrame]:
-        from dexrepro.recordings import read_frame
-
-        return {path.stem: read_frame(path) for path in sorted((self.folder / "tables").glob("*.csv"))}
-
-    @property
-    def figures(self) -> dict[str, Path]:
-        return {path.stem: path for path in sorted((self.folder / "figures").glob("*.png"))}
-
-    def __repr__(self) -> str:
-        return f"Result({str(self.folder)!r}, {len(self.metrics)} metrics, {len(self.claims)} claims)"
-
-    def _repr_html_(self) -> str:
-        """What a notebook shows: the claims with their verdicts, and the figures."""
-        cells = [(c["id"], c["statement"], c["verdict"], _short(c["margin"]), c["note"]) for c in self.claims]
-        head = "".join(f"<th>{name}</th>" for name in ("claim", "statement", "verdict", "margin", "note"))
-        rows = ("".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row) for row in cells)
-        table = f"<table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>" if cells else ""
-        differs = f"<p>differs from the book in: {html.escape(', '.join(self.run['differs']))}</p>"
-        images = (
-            f'<img alt="{name}" style="max-width:100%" src="data:image/png;base64,'
-            f'{base64.b64encode(path.read_bytes()).decode()}">' for name, path in self.figures.items()
-        )  # fmt: skip
-        folder = html.escape(str(self.folder))
-        return f"<h4>{folder}</h4>{differs if self.run.get('differs') else ''}{table}{''.join(images)}"
-
-
-class Results(dict[str, Result]):
-    """Results by experiment."""
-
-    def _repr_html_(self) -> str:
-        return "".join(result._repr_html_() for result in self.values())
-
-
-def _short(number: float | None) -> str:
-    return "" if number is None else f"{number:.3g}"

@@ -42,7 +42,7 @@ from dexrepro.physics.engine import REFERENCE
 from dexrepro.plan import content_of, uses_engine
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.provenance import Provenance, provenance
-from dexrepro.runner import flat, summarise
+from dexrepro.result import flat, summarise
 from dexrepro.storage import claimed, digest_of, finite, locked, opened, read_json, require, write_json, write_text
 
 Cases = tuple[str, ...]

@@ -24,7 +24,8 @@ LIBRARY = {
     "humans": "Synthetic people",
     "vision": "What chapter 3 sees",
 }
-TOOL = ("__init__", "case", "claims", "experiment", "measures", "recordings", "storage", "study", "report.style")
+TOOL = ("__init__", "case", "claims", "experiment", "measures", "recordings", "result", "storage", "study",
+        "report.style")  # fmt: skip
 ARGUMENT = re.compile(r"(\w[^:\n]*?):(?=\s)")  # "gain: m/N", "simulate(config) -> Recording: one case"
 Pages = Iterator[tuple[str, str]]
 CODE = re.compile(r"(``.*?``|:\w+:`.*?`|::$)", re.DOTALL)

@@ -128,7 +128,7 @@ def test_a_result_that_cannot_be_drawn_is_named_and_stays(
     def lacking(*_: object) -> None:
         raise AttributeError("no configuration key 'demonstrations'")
 
-    monkeypatch.setattr("dexrepro.runner.present", lacking)
+    monkeypatch.setattr("dexrepro.result.present", lacking)
     before = {path: path.read_bytes() for path in result.rglob("*.*")}
     assert cli.main(["draw"]) == 1
     assert "decay cannot be drawn, run it again: AttributeError: no configuration key" in capsys.readouterr().err

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from dexrepro import progress, timings
 from dexrepro.progress import Bar, Lines, duration
-from dexrepro.runner import CaseEntry
+from dexrepro.result import CaseEntry
 
 
 class Clock:

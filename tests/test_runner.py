@@ -14,8 +14,8 @@ from dexrepro import cli
 from dexrepro.case import generator
 from dexrepro.errors import InputError
 from dexrepro.plan import own_digest, plan_chapter
+from dexrepro.result import Result
 from dexrepro.runner import KEPT, complete, run_plans
-from dexrepro.storage import Result
 
 
 def run(*overrides: str, workers: int = 1, force: bool = False):

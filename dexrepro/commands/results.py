@@ -101,7 +101,7 @@ def draw_command(options: argparse.Namespace) -> int:
     """``dexrepro draw [FOLDER ...] [key=value ...]``: figures and tables again from what is on disk."""
     from dexrepro import chapters
     from dexrepro.report.damage import check_result
-    from dexrepro.runner import redraw
+    from dexrepro.result import redraw
     from dexrepro.selection import selected
     from dexrepro.storage import read_json
 

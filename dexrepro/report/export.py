@@ -16,7 +16,7 @@ from dexrepro.errors import refused
 from dexrepro.experiment import Experiment
 from dexrepro.plan import matches
 from dexrepro.report.style import TWO_COLUMNS, file_stem, style
-from dexrepro.runner import recorded
+from dexrepro.result import recorded
 
 FORMATS = ("pdf", "png", "svg")
 SLIDE = 12.0  # inch: a figure as wide as a slide (13.33) with its margins

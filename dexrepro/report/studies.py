@@ -13,7 +13,7 @@ from dexrepro import chapters
 from dexrepro.baselines import baseline_dir
 from dexrepro.claims import FRAGILE, OPEN, ROBUST, Claim
 from dexrepro.report import style, verdicts
-from dexrepro.runner import flat
+from dexrepro.result import flat
 from dexrepro.study import read_samples
 
 ROW = 0.2  # inch a claim

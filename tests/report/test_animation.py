@@ -112,7 +112,7 @@ def test_a_run_that_ended_before_the_span_of_the_film_is_shown_as_a_whole(swing:
 
 def test_a_result_that_names_foreign_code_is_not_rendered(swing: tuple[Path, Experiment], tmp_path: Path) -> None:
     trap = tmp_path / "trap"
-    foreign = ["pathlib.Path.touch", "dexrepro.storage.shutil.rmtree", "dexrepro.runner.redraw", "os.system"]
+    foreign = ["pathlib.Path.touch", "dexrepro.storage.shutil.rmtree", "dexrepro.result.redraw", "os.system"]
     imports = ["dexrepro.chapters.add", "dexrepro.chapters._package", "dexrepro.chapters.chapter7.skills.import_module"]
     for target in foreign + imports:
         node = {"_target_": target, "self": str(trap)}
