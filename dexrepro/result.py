@@ -178,6 +178,11 @@ class Result:
     def figures(self) -> dict[str, Path]:
         return {path.stem: path for path in sorted((self.folder / "figures").glob("*.png"))}
 
+    @property
+    def warnings(self) -> list[str]:
+        """What the user's files made doubtful, each sentence once."""
+        return sorted({text for entry in self.run["cases"].values() for text in entry.get("warnings", ())})
+
     def __repr__(self) -> str:
         return f"Result({str(self.folder)!r}, {len(self.metrics)} metrics, {len(self.claims)} claims)"
 

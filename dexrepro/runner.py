@@ -11,7 +11,6 @@ import subprocess
 import time
 import warnings
 import zlib
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
@@ -435,15 +434,3 @@ def _kept_failure(task: Job | Plan, failure: Failure) -> str:
     with contextlib.suppress(OSError):
         write_text(path, f"{job.content if failure.exit is not None else ''}\n{text}\n{failure.traceback}")
     return text
-
-
-def summary_rows(outcome: Outcome) -> list[dict[str, Any]]:
-    """One row an experiment for the table at the end: wall time, real-time factor, claims by verdict."""
-    rows = []
-    for name, folder in outcome.folders.items():
-        run, claims = read_json(folder / "run.json"), read_json(folder / "claims.json")
-        verdicts = dict(Counter(claim["verdict"] for claim in claims))
-        timing = {key: run[key] for key in ("wall", "simulated", "real_time_factor")}
-        doubts = sorted({text for entry in run["cases"].values() for text in entry.get("warnings", ())})
-        rows.append({"experiment": name, "folder": str(folder), "claims": verdicts, "warnings": doubts, **timing})
-    return rows

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ from dexrepro.keys import SELECTION
 
 if TYPE_CHECKING:
     from dexrepro.plan import Plan
+    from dexrepro.result import Result
     from dexrepro.runner import Outcome
 
 HYDRA_FLAGS = ("-m", "--multirun", "--cfg", "-c", "--info", "-i", "--hydra-help", "--resolve")
@@ -115,7 +117,8 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
     from dexrepro.config import compose_chapter
     from dexrepro.plan import plan_chapter
     from dexrepro.progress import Bar, Lines, Silent
-    from dexrepro.runner import run_plans, summary_rows
+    from dexrepro.result import Result
+    from dexrepro.runner import run_plans
     from dexrepro.selection import chapters_of, of_chapter, positive_workers
 
     numbers, rest = chapters_of(overrides, extra_dir)
@@ -137,9 +140,10 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
     with progress if isinstance(progress, Bar) else nullcontext():
         force = bool(settings.get("force"))
         outcome = run_plans(plans, workers=workers, force=force, progress=progress)
+    results = {name: Result(folder) for name, folder in outcome.folders.items()}
     if not quiet:
-        _print_summary(outcome, skipped)
-    for text in dict.fromkeys(text for row in summary_rows(outcome) for text in row["warnings"]):
+        _print_summary(results, outcome.differs, skipped)
+    for text in dict.fromkeys(text for result in results.values() for text in result.warnings):
         warn(f"warning: {text}")
     return outcome
 
@@ -168,41 +172,28 @@ def _run_job(config: Any) -> None:
         raise JobFailed("; ".join(failures))
 
 
-def _print_summary(outcome: Outcome, skipped: Mapping[str, str]) -> None:
+def _print_summary(results: Mapping[str, Result], differs: Mapping[str, list[str]], skipped: Mapping[str, str]) -> None:
+    from dexrepro.baselines import Baseline
     from dexrepro.claims import NOT_EVALUATED, VERDICTS
-    from dexrepro.runner import summary_rows
+    from dexrepro.report.verdicts import to_name
 
     table = Table(box=None, header_style="bold", pad_edge=False)
-    rows = summary_rows(outcome)
-    shown = [verdict for verdict in VERDICTS if any(row["claims"].get(verdict) for row in rows)]
+    verdicts = {name: Counter(claim["verdict"] for claim in result.claims) for name, result in results.items()}
+    shown = [verdict for verdict in VERDICTS if any(counts[verdict] for counts in verdicts.values())]
     for column in ("experiment", "wall [s]", "x real time", *shown, "result"):
         table.add_column(column, justify="left" if column in ("experiment", "result") else "right", no_wrap=True)
-    evaluated = True
-    for row in rows:
-        factor = f"{row['real_time_factor']:.1f}" if row["real_time_factor"] else ""
-        verdicts = row["claims"]
-        evaluated = evaluated and not verdicts.get(NOT_EVALUATED)
-        counts = [str(verdicts.get(key, 0) or "") for key in shown]
-        table.add_row(row["experiment"], f"{row['wall']:.1f}", factor, *counts, row["folder"])
+    for name, result in results.items():
+        factor = f"{result.run['real_time_factor']:.1f}" if result.run["real_time_factor"] else ""
+        counts = [str(verdicts[name][key] or "") for key in shown]
+        table.add_row(name, f"{result.run['wall']:.1f}", factor, *counts, str(result.folder))
     out.print(table)
     for name, reason in skipped.items():
         say(f"{name} skipped: {reason}")
-    for name, differs in outcome.differs.items():
-        for line in _differs(name, differs) if name in outcome.folders else ():
+    for name, keys in differs.items():
+        for line in _differs(name, keys) if name in results else ():
             say(line)
-    for line in _claims_to_name(outcome):
-        say(line)
-    if not evaluated:
+    for name, result in results.items():
+        for line in to_name(result.claims, Baseline.of(result.run["chapter"], name).claims) if result.claims else ():
+            say(line)
+    if any(counts[NOT_EVALUATED] for counts in verdicts.values()):
         out.print("claims whose metrics this run does not have are not evaluated")
-
-
-def _claims_to_name(outcome: Outcome) -> list[str]:
-    from dexrepro.baselines import Baseline
-    from dexrepro.report import verdicts
-    from dexrepro.storage import read_json
-
-    lines = []
-    for name, folder in outcome.folders.items():
-        run, claims = read_json(folder / "run.json"), read_json(folder / "claims.json")
-        lines += verdicts.to_name(claims, Baseline.of(run["chapter"], name).claims) if claims else []
-    return lines
