@@ -24,6 +24,7 @@ from dexrepro.progress import Silent
 from dexrepro.result import flat
 from dexrepro.runner import run_plans
 from dexrepro.storage import read_json, require, write_json
+from dexrepro.study.samples import shipped_samples
 
 OTHER = "mujoco"
 SPREAD = (0.05, 0.95)  # quantiles of a number among the samples of a study
@@ -97,8 +98,6 @@ def compare(plan: Plan, folder: Path) -> Comparison:
 
 
 def _samples(plan: Plan) -> list[Mapping[str, float | None]]:
-    from dexrepro.study import shipped_samples  # which asks here whether samples of the other engine count
-
     return [
         flat(plan.experiment, {case: row.get("metrics", {}) for case, row in entry["cases"].items()})
         for entry in shipped_samples(plan.experiment)

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from dexrepro import baselines, chapters, study
+from dexrepro import baselines, chapters
 from dexrepro.claims import FRAGILE, OPEN, ROBUST, VERDICTS
 from dexrepro.report import verdicts
 from dexrepro.report.listing import chapter_listing
+from dexrepro.study.summaries import robustness_of
 
 WORDS = (ROBUST, FRAGILE, OPEN)  # what studies show of the claims that hold
 
@@ -18,7 +19,7 @@ WORDS = (ROBUST, FRAGILE, OPEN)  # what studies show of the claims that hold
 def _row(number: str) -> dict[str, Any]:
     """What a chapter has, its claims of the book by verdict, those severely tested, and the headline."""
     chapter, listed = chapters.load(number), chapter_listing(number)["experiments"]
-    metrics, words = baselines.stored_values(number), study.robustness_of(number)
+    metrics, words = baselines.stored_values(number), robustness_of(number)
     claims = [
         {**claim.evaluate(metrics).as_dict(), "robustness": words.get(claim.id, OPEN)}
         for claim in chapter.claims

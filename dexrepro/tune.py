@@ -38,7 +38,7 @@ from dexrepro.pool import Failure, Pool
 from dexrepro.provenance import provenance
 from dexrepro.selection import chapters_of
 from dexrepro.storage import digest_of, finite, read_json, write_json
-from dexrepro.study import within
+from dexrepro.study.draws import within
 
 ROUNDS, SHRINK = 4, 0.4  # boxes around the best, each this share as wide as the one before
 EDGE = 0.02  # share of a range that counts as its edge

@@ -25,7 +25,7 @@ LIBRARY = {
     "vision": "What chapter 3 sees",
 }
 TOOL = ("__init__", "case", "claims", "experiment", "measures", "recordings", "result", "storage", "study",
-        "report.style")  # fmt: skip
+        "study.draws", "study.samples", "study.sampling", "study.summaries", "report.style")  # fmt: skip
 ARGUMENT = re.compile(r"(\w[^:\n]*?):(?=\s)")  # "gain: m/N", "simulate(config) -> Recording: one case"
 Pages = Iterator[tuple[str, str]]
 CODE = re.compile(r"(``.*?``|:\w+:`.*?`|::$)", re.DOTALL)

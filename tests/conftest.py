@@ -53,15 +53,15 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A report of chapter 90, with a film, a study and a run with other parameters; built once a module."""
     from PIL import Image
 
-    from dexrepro import study
     from dexrepro.plan import plan_chapter
     from dexrepro.report import page
     from dexrepro.runner import run_plans
+    from dexrepro.study import sampling
 
     with toy_chapter(tmp_path_factory.mktemp("work"), tmp_path_factory.mktemp("toy") / "book") as folder:
         for overrides in ((), ("decay.start=0.5",)):
             run_plans(plan_chapter("90", overrides)[0], workers=1, force=False)
-        study.run("90", "decay", 8, Path("results"), workers=1)
+        sampling.run("90", "decay", 8, Path("results"), workers=1)
         films = folder / "results/chapter90/decay/animation"
         films.mkdir()
         for name in ("plain.gif", "plain.png"):

@@ -7,12 +7,13 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
-from dexrepro import baselines, cli, crosscheck, study
+from dexrepro import baselines, cli, crosscheck
 from dexrepro.baselines import Baseline
 from dexrepro.crosscheck import Comparison, Difference
 from dexrepro.errors import InputError
 from dexrepro.physics import engine
 from dexrepro.plan import plan_chapter, uses_engine
+from dexrepro.study import samples, sampling
 
 ARMS, NONE = "arm_obstacles", "planar_skill"  # experiments of chapter 6 with simulated arms, and without
 
@@ -107,21 +108,21 @@ def test_where_no_arm_is_simulated_there_is_nothing_to_compare(command):
 
 
 def test_samples_of_another_engine_count_while_the_engines_agree(tmp_path, monkeypatch):
-    for module in (crosscheck, study, baselines):
+    for module in (crosscheck, samples, baselines):
         monkeypatch.setattr(module, "baseline_dir", lambda: tmp_path / "shipped")
     with pytest.raises(InputError, match="ask: dexrepro crosscheck chapter=2 only=holding_line"):
-        study.run("2", "holding_line", 1, tmp_path, workers=1, engine="mujoco")
+        sampling.run("2", "holding_line", 1, tmp_path, workers=1, engine="mujoco")
     sample = {"index": 0, "engine": "mujoco"}
-    contents = study._contents("2", "holding_line", sample)
-    assert contents != study._contents("2", "holding_line", {"index": 0})
-    samples = [sample, {"index": 1}]
-    for entry in samples:
-        contents = study._contents("2", "holding_line", entry)
+    contents = samples.contents("2", "holding_line", sample)
+    assert contents != samples.contents("2", "holding_line", {"index": 0})
+    entries = [sample, {"index": 1}]
+    for entry in entries:
+        contents = samples.contents("2", "holding_line", entry)
         entry["cases"] = {case: {"content": content, "metrics": {}} for case, content in contents.items()}
-    monkeypatch.setattr(study, "_all", lambda *_: samples)
+    monkeypatch.setattr(samples, "all_samples", lambda *_: entries)
     for verdicts, counts in ((("reproduced", "reproduced"), True), (("reproduced", "not reproduced"), False)):
         crosscheck.keep([comparison(verdicts)], crosscheck.table(tmp_path))
-        assert study._kept("2", "holding_line", tmp_path).keys() == ({0, 1} if counts else {1})
+        assert sampling.kept_samples("2", "holding_line", tmp_path).keys() == ({0, 1} if counts else {1})
 
 
 def test_the_shipped_table_is_of_all_experiments_with_simulated_arms_and_of_claims_that_there_are():

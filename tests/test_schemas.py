@@ -12,12 +12,13 @@ import pytest
 from conftest import ROOT
 from jsonschema import Draft202012Validator, ValidationError
 
-from dexrepro import chapters, cli, study
+from dexrepro import chapters, cli
 from dexrepro.config import compose_chapter
 from dexrepro.plan import plan_chapter
 from dexrepro.report.listing import listing
 from dexrepro.report.schema import schema
 from dexrepro.runner import run_plans
+from dexrepro.study import samples, sampling
 
 SCHEMAS = {path.name.partition(".")[0]: path for path in (ROOT / "docs/schemas").glob("*.json")}
 
@@ -36,11 +37,11 @@ def test_the_schemas_are_schemas() -> None:
 def test_a_result_a_study_and_the_check_are_as_their_schemas_say(
     toy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(study, "baseline_dir", lambda: toy / "shipped")
+    monkeypatch.setattr(samples, "baseline_dir", lambda: toy / "shipped")
     run_plans(plan_chapter("90")[0], workers=1, force=False)
     for name in ("metrics", "claims", "run"):
         valid(name, json.loads(Path(f"results/chapter90/decay/{name}.json").read_text("utf-8")))
-    summary = study.run("90", "decay", 9, Path("results"), workers=1)
+    summary = sampling.run("90", "decay", 9, Path("results"), workers=1)
     valid("study", json.loads(summary.read_text("utf-8")))
     for line in summary.with_suffix(".jsonl").read_text("utf-8").splitlines():
         valid("sample", json.loads(line))

@@ -16,66 +16,68 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-from dexrepro import study
+from dexrepro import chapters
 from dexrepro.claims import LOOKS, Claim, less, robustness
 from dexrepro.errors import InputError
 from dexrepro.pool import Pool
 from dexrepro.storage import read_json
+from dexrepro.study import draws, samples, sampling, summaries
+from dexrepro.study.confirm import confirm
 
 RESULTS = Path("results")
 
 
 @pytest.fixture
 def folder(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(study, "baseline_dir", lambda: toy / "shipped")
+    monkeypatch.setattr(samples, "baseline_dir", lambda: toy / "shipped")
     return toy
 
 
 def test_only_parameters_with_a_declared_range_are_varied(folder: Path) -> None:
-    assert set(study.parameters("90", "decay")) == {"decay.start"}
-    values, block = study.draw("90", "decay", 3)
+    assert set(draws.parameters("90", "decay")) == {"decay.start"}
+    values, block = draws.draw("90", "decay", 3)
     assert 0.5 <= values["decay.start"] <= 2
     assert all(case["start"] == values["decay.start"] for case in block["cases"].values())
-    assert study.draw("90", "decay", 3) == (values, block)
+    assert draws.draw("90", "decay", 3) == (values, block)
 
 
 def test_shared_parameters_are_found_through_whole_blocks_and_chains() -> None:
     composed = {"shared": {"arm": {"mass": 1.0, "length": "${shared.size}"}, "size": 2.0, "unused": 3.0}}
-    assert study._references(composed, {"arm": "${shared.arm}"}) == {"shared.arm", "shared.size"}
+    assert draws._references(composed, {"arm": "${shared.arm}"}) == {"shared.arm", "shared.size"}
 
 
 def test_only_the_cases_of_claims_are_run(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    claims = study.chapters.load("90").claims_of("decay")
-    cases = study.draw("90", "decay", 0)[1]["cases"]
-    assert study._cases_of(claims, cases) == ["plain", "fast", "gain1", "gain2"]
+    claims = chapters.load("90").claims_of("decay")
+    cases = draws.draw("90", "decay", 0)[1]["cases"]
+    assert samples.needed_cases(claims, cases) == ["plain", "fast", "gain1", "gain2"]
     over_all = Claim("C90.09", "90.10", "a number over several cases", less("decay.ratio", 9))
-    assert study._cases_of([*claims, over_all], cases) == list(cases)
+    assert samples.needed_cases([*claims, over_all], cases) == list(cases)
 
 
 def test_some_cases_are_studied_for_the_claims_about_no_other(folder: Path) -> None:
-    cases = study.cases_of("90", "decay", "gain*")
+    cases = sampling.cases_of("90", "decay", "gain*")
     assert cases == ("gain1", "gain2")
-    path = study.run("90", "decay", 2, RESULTS, workers=1, only=cases)
+    path = sampling.run("90", "decay", 2, RESULTS, workers=1, only=cases)
     assert path.parent.name == "cases"
-    assert not study.summary_file("decay", RESULTS).exists(), "it stands for no whole study"
-    about = [c.id for c in study.chapters.load("90").claims_of("decay") if all(".gain" in n for n in c.metrics)]
+    assert not samples.summary_file("decay", RESULTS).exists(), "it stands for no whole study"
+    about = [c.id for c in chapters.load("90").claims_of("decay") if all(".gain" in n for n in c.metrics)]
     assert sorted(read_json(path)["claims"]) == sorted(about) != []
-    whole = read_json(study.run("90", "decay", 2, RESULTS, workers=1))
+    whole = read_json(sampling.run("90", "decay", 2, RESULTS, workers=1))
     assert set(whole["claims"]) > set(about)
     assert whole["samples"] == 2
     with pytest.raises(InputError, match="unknown case 'gone'"):
-        study.cases_of("90", "decay", "gone")
+        sampling.cases_of("90", "decay", "gone")
     with pytest.raises(InputError, match="no claim of decay is about these cases alone"):
-        study.cases_of("90", "decay", "halved")
+        sampling.cases_of("90", "decay", "halved")
 
 
 def test_a_case_that_fails_leaves_the_claims_of_the_others(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    values, block = study.draw("90", "decay", 0)
+    values, block = draws.draw("90", "decay", 0)
     block["cases"]["gain2"]["fail"] = True
-    monkeypatch.setattr(study, "draw", lambda *_: (values, block))
-    sample = study.evaluate("90", "decay", 0, {})
+    monkeypatch.setattr(samples, "draw", lambda *_: (values, block))
+    sample = samples.evaluate("90", "decay", 0, {})
     assert sample["cases"]["gain2"]["error"] == "ValueError: told to fail"
-    found = study.summary("90", "decay", [sample])
+    found = summaries.summary("90", "decay", [sample])
     assert found["failed"] == 1
     assert set(found["claims"]) == {"C90.01", "C90.02"}
 
@@ -83,94 +85,94 @@ def test_a_case_that_fails_leaves_the_claims_of_the_others(folder: Path, monkeyp
 def test_points_cover_the_ranges_evenly_and_lists_are_drawn_element_by_element(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    origin = study.parameters("90", "decay")["decay.start"]
-    starts = np.sort([study.draw("90", "decay", index)[0]["decay.start"] for index in range(16)])
+    origin = draws.parameters("90", "decay")["decay.start"]
+    starts = np.sort([draws.draw("90", "decay", index)[0]["decay.start"] for index in range(16)])
     share = (starts - origin.low) / (origin.high - origin.low)
     assert np.all(np.floor(16 * share) == np.arange(16)), "one in every sixteenth"
     origins = {"decay.start": origin, "decay.gains": replace(origin, low=1.0, high=9.0)}
-    monkeypatch.setattr(study, "provenance", lambda chapter: origins)
-    study.ranged.cache_clear()
-    assert set(study.parameters("90", "decay")) == {"decay.start", "decay.gains.0", "decay.gains.1"}
-    values, block = study.draw("90", "decay", 5)
+    monkeypatch.setattr(draws, "provenance", lambda chapter: origins)
+    draws.ranged.cache_clear()
+    assert set(draws.parameters("90", "decay")) == {"decay.start", "decay.gains.0", "decay.gains.1"}
+    values, block = draws.draw("90", "decay", 5)
     assert block["gains"] == [values["decay.gains.0"], values["decay.gains.1"]]
-    study.ranged.cache_clear()
+    draws.ranged.cache_clear()
 
 
 def test_a_whole_number_is_drawn_whole_only_where_its_range_has_whole_ends(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    origin, composed = study.parameters("90", "decay")["decay.start"], study.compose_chapter("90")
+    origin, composed = draws.parameters("90", "decay")["decay.start"], draws.compose_chapter("90")
     composed["decay"]["start"] = 1
-    monkeypatch.setattr(study, "compose_chapter", lambda chapter: copy.deepcopy(composed))
+    monkeypatch.setattr(draws, "compose_chapter", lambda chapter: copy.deepcopy(composed))
     for low, whole in ((1.0, True), (0.2, False)):
         origins = {"decay.start": replace(origin, low=low, high=5.0)}
-        monkeypatch.setattr(study, "provenance", lambda chapter, origins=origins: origins)
-        study.ranged.cache_clear()
-        drawn = [study.draw("90", "decay", index)[0]["decay.start"] for index in range(8)]
+        monkeypatch.setattr(draws, "provenance", lambda chapter, origins=origins: origins)
+        draws.ranged.cache_clear()
+        drawn = [draws.draw("90", "decay", index)[0]["decay.start"] for index in range(8)]
         assert all(isinstance(value, int) for value in drawn) is whole
         assert min(drawn) >= low
-    study.ranged.cache_clear()
+    draws.ranged.cache_clear()
 
 
 def test_the_best_of_a_search_is_not_drawn_and_what_is_drawn_beside_it_stays(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    start = study.parameters("90", "decay")["decay.start"]
+    start = draws.parameters("90", "decay")["decay.start"]
     drawn = []
     for kind in ("chosen", "derived"):
         origins = {"decay.gains": replace(start, low=1.0, high=9.0, kind=kind), "decay.start": start}
-        monkeypatch.setattr(study, "provenance", lambda chapter, origins=origins: origins)
-        study.ranged.cache_clear()
-        drawn.append(study.draw("90", "decay", 5)[0])
-    study.ranged.cache_clear()
+        monkeypatch.setattr(draws, "provenance", lambda chapter, origins=origins: origins)
+        draws.ranged.cache_clear()
+        drawn.append(draws.draw("90", "decay", 5)[0])
+    draws.ranged.cache_clear()
     assert drawn[0].keys() - drawn[1].keys() == {"decay.gains.0", "decay.gains.1"}
     assert drawn[0].items() >= drawn[1].items()
 
 
 def test_words_are_drawn_evenly_and_leave_the_numbers_alone(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    start = study.parameters("90", "decay")["decay.start"]
-    before = [study.draw("90", "decay", index)[0] for index in range(16)]
-    words = study.Provenance("-", "chosen", "either", words=("exact", "euler"), drawn=True)
-    composed = study.compose_chapter("90")
+    start = draws.parameters("90", "decay")["decay.start"]
+    before = [draws.draw("90", "decay", index)[0] for index in range(16)]
+    words = draws.Provenance("-", "chosen", "either", words=("exact", "euler"), drawn=True)
+    composed = draws.compose_chapter("90")
     composed["decay"]["integrator"] = "exact"
-    monkeypatch.setattr(study, "compose_chapter", lambda chapter: copy.deepcopy(composed))
-    monkeypatch.setattr(study, "provenance", lambda chapter: {"decay.start": start, "decay.integrator": words})
-    study.ranged.cache_clear()
-    drawn = [study.draw("90", "decay", index) for index in range(16)]
+    monkeypatch.setattr(draws, "compose_chapter", lambda chapter: copy.deepcopy(composed))
+    monkeypatch.setattr(draws, "provenance", lambda chapter: {"decay.start": start, "decay.integrator": words})
+    draws.ranged.cache_clear()
+    drawn = [draws.draw("90", "decay", index) for index in range(16)]
     assert [block["integrator"] for _, block in drawn] == [values["decay.integrator"] for values, _ in drawn]
     assert sorted(values.pop("decay.integrator") for values, _ in drawn) == ["euler"] * 8 + ["exact"] * 8
     assert [values for values, _ in drawn] == before
-    study.ranged.cache_clear()
+    draws.ranged.cache_clear()
 
 
 def test_a_reworded_claim_costs_no_simulation(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = study.run("90", "decay", 4, RESULTS, workers=1)
+    path = sampling.run("90", "decay", 4, RESULTS, workers=1)
     other = Claim(
         "C90.01", "90.10", "the fast one decays much more", less("decay.fast.final", "decay.plain.final", 0.5)
     )
-    chapter = study.chapters.load("90")
+    chapter = chapters.load("90")
     changed = replace(chapter, claims=(other, *chapter.claims[1:]))
-    monkeypatch.setattr(study.chapters, "load", lambda number: changed)
-    monkeypatch.setattr(study, "run_case", lambda *_: pytest.fail("it was simulated again"))
-    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
-    again = read_json(study.run("90", "decay", 4, RESULTS))
+    monkeypatch.setattr(chapters, "load", lambda number: changed)
+    monkeypatch.setattr(samples, "run_case", lambda *_: pytest.fail("it was simulated again"))
+    monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
+    again = read_json(sampling.run("90", "decay", 4, RESULTS))
     assert again["claims"]["C90.01"]["predicate"] == "decay.fast.final < 0.5 decay.plain.final"
     assert again["claims"]["C90.01"]["samples"] == 4
     assert path.exists()
 
 
 def test_a_study_says_nothing_of_a_claim_that_has_changed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    study.run("90", "decay", 16, RESULTS, workers=1)
-    assert study.robustness_of("90", RESULTS)["C90.01"] == "open"
-    chapter = study.chapters.load("90")
+    sampling.run("90", "decay", 16, RESULTS, workers=1)
+    assert summaries.robustness_of("90", RESULTS)["C90.01"] == "open"
+    chapter = chapters.load("90")
     other = replace(chapter.claims[0], predicate=less("decay.fast.final", 9))
-    monkeypatch.setattr(study.chapters, "load", lambda _: replace(chapter, claims=(other, *chapter.claims[1:])))
-    assert "C90.01" not in study.robustness_of("90", RESULTS)
+    monkeypatch.setattr(chapters, "load", lambda _: replace(chapter, claims=(other, *chapter.claims[1:])))
+    assert "C90.01" not in summaries.robustness_of("90", RESULTS)
 
 
 def test_a_study_ends_when_every_claim_is_decided(folder: Path) -> None:
     """The toy's claims that always hold need 26 samples, the one that holds in a third is fragile before."""
-    result = read_json(study.run("90", "decay", None, RESULTS, workers=1))
+    result = read_json(sampling.run("90", "decay", None, RESULTS, workers=1))
     assert result["samples"] == 26
     assert {key: row["word"] for key, row in result["claims"].items()} == {
         "C90.01": "robust",
@@ -180,18 +182,18 @@ def test_a_study_ends_when_every_claim_is_decided(folder: Path) -> None:
 
 
 def test_what_is_decided_is_drawn_no_more(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    chapter = study.chapters.load("90")
+    chapter = chapters.load("90")
     seldom = Claim("C90.02", "90.10", "it stays small", less("decay.gain2.largest", 0.5))
-    monkeypatch.setattr(study.chapters, "load", lambda _: replace(chapter, claims=(chapter.claims[0], seldom)))
-    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
-    path = study.run("90", "decay", None, RESULTS)
+    monkeypatch.setattr(chapters, "load", lambda _: replace(chapter, claims=(chapter.claims[0], seldom)))
+    monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
+    path = sampling.run("90", "decay", None, RESULTS)
     rows = {key: (row["word"], row["samples"]) for key, row in read_json(path)["claims"].items()}
     assert rows == {"C90.01": ("robust", 26), "C90.02": ("fragile", 16)}
-    cases = [set(entry["cases"]) for entry in study.read_samples(study._lines(path))]
+    cases = [set(entry["cases"]) for entry in samples.read_samples(samples.samples_file(path))]
     assert cases == [{"plain", "fast", "gain2"}] * 16 + [{"plain", "fast"}] * 10
-    monkeypatch.setattr(study.chapters, "load", lambda _: chapter)
-    assert read_json(study.run("90", "decay", 28, RESULTS))["claims"]["C90.03"]["samples"] == 28, "the rest is added"
-    entries = [entry for entry in study._kept("90", "decay", RESULTS).values() if len(entry["cases"]) == 4]
+    monkeypatch.setattr(chapters, "load", lambda _: chapter)
+    assert read_json(sampling.run("90", "decay", 28, RESULTS))["claims"]["C90.03"]["samples"] == 28, "the rest is added"
+    entries = [entry for entry in sampling.kept_samples("90", "decay", RESULTS).values() if len(entry["cases"]) == 4]
     assert len(entries) == 28
 
 
@@ -200,91 +202,93 @@ def test_no_parameter_is_named_by_luck() -> None:
     named = 0
     for _ in range(60):
         values = [dict(zip("abcdefghij", row)) for row in rng.random((16, 10))]
-        named += study._most_influential(rng.random(16), values)[0] is not None
+        named += summaries._most_influential(rng.random(16), values)[0] is not None
     assert named <= 8, "about one in twenty of 60, whatever the number of parameters"
     values = [dict(zip("abcdefghij", row)) for row in rng.random((16, 10))]
-    assert study._most_influential(np.array([-row["c"] for row in values]), values) == ("c", pytest.approx(-1))
+    assert summaries._most_influential(np.array([-row["c"] for row in values]), values) == ("c", pytest.approx(-1))
 
 
 def test_a_study_counts_how_often_each_claim_holds_and_what_it_follows(folder: Path) -> None:
-    result = read_json(study.run("90", "decay", 16, RESULTS, workers=1))
+    result = read_json(sampling.run("90", "decay", 16, RESULTS, workers=1))
     always, sometimes = result["claims"]["C90.01"], result["claims"]["C90.02"]
     assert (always["holds"], always["samples"]) == (16, 16)
     assert always["low"] == pytest.approx(16 / (16 + 1.959964**2), rel=1e-4), "Wilson's interval"
-    starts = [study.draw("90", "decay", index)[0]["decay.start"] for index in range(16)]
+    starts = [draws.draw("90", "decay", index)[0]["decay.start"] for index in range(16)]
     assert sometimes["holds"] == sum(start < 1 for start in starts)
     assert sometimes["parameter"] == "decay.start"
     assert result["failed"] == 0
 
 
 def test_a_study_resumes_and_survives_a_line_cut_short(folder: Path) -> None:
-    study.run("90", "decay", 4, RESULTS, workers=1)
+    sampling.run("90", "decay", 4, RESULTS, workers=1)
     lines = RESULTS / "studies/decay.jsonl"
     kept = lines.read_text().splitlines(keepends=True)
     lines.write_text("".join(kept[:3]) + kept[3][:20])
-    study.run("90", "decay", 6, RESULTS, workers=1)
+    sampling.run("90", "decay", 6, RESULTS, workers=1)
     assert lines.read_text().startswith("".join(kept[:3]))
-    assert [entry["index"] for entry in study.read_samples(lines)] == list(range(6))
+    assert [entry["index"] for entry in samples.read_samples(lines)] == list(range(6))
 
 
 def test_a_study_asked_for_less_forgets_nothing(folder: Path) -> None:
-    study.run("90", "decay", 5, RESULTS, workers=1)
-    assert read_json(study.run("90", "decay", 2, RESULTS, workers=1))["samples"] == 5
+    sampling.run("90", "decay", 5, RESULTS, workers=1)
+    assert read_json(sampling.run("90", "decay", 2, RESULTS, workers=1))["samples"] == 5
 
 
 def test_shipped_samples_count_and_those_of_another_configuration_do_not(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    study.run("90", "decay", 3, RESULTS, workers=1)
+    sampling.run("90", "decay", 3, RESULTS, workers=1)
     (folder / "shipped").mkdir()
     (RESULTS / "studies").rename(folder / "shipped/study")
     evaluated: list[int] = []
-    evaluate = study.evaluate
-    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
-    monkeypatch.setattr(study, "evaluate", lambda *which: evaluated.append(which[2]) or evaluate(*which))
+    evaluate = samples.evaluate
+    monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
+    monkeypatch.setattr(samples, "evaluate", lambda *which: evaluated.append(which[2]) or evaluate(*which))
     lines = folder / "shipped/study/decay.jsonl"
     lines.with_suffix(".jsonl.gz").write_bytes(gzip.compress(lines.read_bytes()))
     lines.unlink()
-    study.run("90", "decay", 5, RESULTS)
+    sampling.run("90", "decay", 5, RESULTS)
     assert evaluated == [3, 4]
-    narrower = {key: replace(origin, high=1.0) for key, origin in study.parameters("90", "decay").items()}
-    monkeypatch.setattr(study, "ranged", lambda *_: narrower)
-    assert read_json(study.run("90", "decay", 2, Path("other")))["samples"] == 2
+    narrower = {key: replace(origin, high=1.0) for key, origin in draws.parameters("90", "decay").items()}
+    monkeypatch.setattr(draws, "ranged", lambda *_: narrower)
+    assert read_json(sampling.run("90", "decay", 2, Path("other")))["samples"] == 2
     assert evaluated[2:] == [0, 1]
 
 
 def test_only_the_cases_that_changed_run_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    study.run("90", "decay", 2, RESULTS, workers=1)
-    keys = study.content_of
-    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
-    monkeypatch.setattr(study, "content_of", lambda who, values: keys(who, values) + "new" * (values["case"] == "fast"))
-    ran: list[str] = []
-    run_case = study.run_case
+    sampling.run("90", "decay", 2, RESULTS, workers=1)
+    keys = samples.content_of
+    monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
     monkeypatch.setattr(
-        study, "run_case", lambda who, values, seed: ran.append(values.case) or run_case(who, values, seed)
+        samples, "content_of", lambda who, values: keys(who, values) + "new" * (values["case"] == "fast")
     )
-    assert read_json(study.run("90", "decay", 2, RESULTS))["samples"] == 2
+    ran: list[str] = []
+    run_case = samples.run_case
+    monkeypatch.setattr(
+        samples, "run_case", lambda who, values, seed: ran.append(values.case) or run_case(who, values, seed)
+    )
+    assert read_json(sampling.run("90", "decay", 2, RESULTS))["samples"] == 2
     assert ran == ["fast", "fast"]
 
 
 def test_samples_are_carried_over_a_change_of_code_that_changes_no_number(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = study.run("90", "decay", 4, RESULTS, workers=1)
-    keys, run_case = study.content_of, study.run_case
-    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
-    monkeypatch.setattr(study, "content_of", lambda who, values: keys(who, values) + "of other code")
+    path = sampling.run("90", "decay", 4, RESULTS, workers=1)
+    keys, run_case = samples.content_of, samples.run_case
+    monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
+    monkeypatch.setattr(samples, "content_of", lambda who, values: keys(who, values) + "of other code")
 
     def other(who: Any, values: Any, seed: int) -> Any:
         recording, metrics, *rest = run_case(who, values, seed)
         return recording, {**metrics, "final": metrics["final"] * (1.01 if values.case == "fast" else 1)}, *rest
 
-    monkeypatch.setattr(study, "run_case", other)
-    assert study.confirm("90", "decay", RESULTS) == (3 * 4, ["fast"])
-    monkeypatch.setattr(study, "run_case", run_case)
-    assert study.confirm("90", "decay", RESULTS) == (4, [])
-    monkeypatch.setattr(study, "run_case", lambda *_: pytest.fail("it was simulated again"))
-    assert read_json(study.run("90", "decay", 4, RESULTS)) == read_json(path)
+    monkeypatch.setattr(samples, "run_case", other)
+    assert confirm("90", "decay", RESULTS) == (3 * 4, ["fast"])
+    monkeypatch.setattr(samples, "run_case", run_case)
+    assert confirm("90", "decay", RESULTS) == (4, [])
+    monkeypatch.setattr(samples, "run_case", lambda *_: pytest.fail("it was simulated again"))
+    assert read_json(sampling.run("90", "decay", 4, RESULTS)) == read_json(path)
 
 
 def test_a_case_that_failed_twice_is_carried_over_only_where_it_failed_alike(
@@ -296,66 +300,66 @@ def test_a_case_that_failed_twice_is_carried_over_only_where_it_failed_alike(
                 raise ValueError(sentence)
             return run_case(who, values, seed)
 
-        monkeypatch.setattr(study, "run_case", run)
+        monkeypatch.setattr(samples, "run_case", run)
 
-    keys, run_case = study.content_of, study.run_case
-    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))
+    keys, run_case = samples.content_of, samples.run_case
+    monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
     failing("the error grew to 1.25e3 m")
-    study.run("90", "decay", 2, RESULTS, workers=1)
-    monkeypatch.setattr(study, "content_of", lambda who, values: keys(who, values) + "of other code")
+    sampling.run("90", "decay", 2, RESULTS, workers=1)
+    monkeypatch.setattr(samples, "content_of", lambda who, values: keys(who, values) + "of other code")
     failing("the matrix is singular")
-    assert study.confirm("90", "decay", RESULTS)[1] == ["fast"]
+    assert confirm("90", "decay", RESULTS)[1] == ["fast"]
     failing("the error grew to 1.26e3 m")
-    assert study.confirm("90", "decay", RESULTS) == (2, [])
+    assert confirm("90", "decay", RESULTS) == (2, [])
 
 
 def test_a_study_never_becomes_smaller(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = study.run("90", "decay", 3, RESULTS, workers=1)
-    lines, narrower = (RESULTS / "studies/decay.jsonl").read_text(), study.parameters("90", "decay")
+    path = sampling.run("90", "decay", 3, RESULTS, workers=1)
+    lines, narrower = (RESULTS / "studies/decay.jsonl").read_text(), draws.parameters("90", "decay")
     narrower = {key: replace(origin, high=1.0) for key, origin in narrower.items()}
-    monkeypatch.setattr(study, "Pool", lambda workers: Pool(here=True))  # other processes do not know of this:
-    monkeypatch.setattr(study, "ranged", lambda *_: narrower)
+    monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))  # other processes do not know of this:
+    monkeypatch.setattr(draws, "ranged", lambda *_: narrower)
     with pytest.raises(InputError, match=r"samples = 2 is not allowed: .* holds 3 samples of another configuration"):
-        study.run("90", "decay", 2, RESULTS, workers=1)
-    assert study.run("90", "decay", 3, RESULTS, workers=1, hours=1e-9) == path  # no time for any
+        sampling.run("90", "decay", 2, RESULTS, workers=1)
+    assert sampling.run("90", "decay", 3, RESULTS, workers=1, hours=1e-9) == path  # no time for any
     assert read_json(path)["samples"] == 3
     assert read_json(path)["varied"]["decay.start"] == [0.5, 2]
     assert (RESULTS / "studies/decay.jsonl").read_text() == lines
-    assert read_json(study.run("90", "decay", 3, RESULTS, workers=1))["varied"]["decay.start"] == [0.5, 1]
+    assert read_json(sampling.run("90", "decay", 3, RESULTS, workers=1))["varied"]["decay.start"] == [0.5, 1]
 
 
 def test_only_an_update_writes_what_is_shipped(folder: Path) -> None:
-    study.run("90", "decay", 2, RESULTS, workers=1)
+    sampling.run("90", "decay", 2, RESULTS, workers=1)
     assert not (folder / "shipped").exists()
-    path = study.run("90", "decay", 3, RESULTS, workers=1, update=True)
+    path = sampling.run("90", "decay", 3, RESULTS, workers=1, update=True)
     assert path == folder / "shipped/study/decay.json"
     assert read_json(path)["samples"] == 3
-    assert len(list(study.read_samples(path.with_suffix(".jsonl.gz")))) == 3
+    assert len(list(samples.read_samples(path.with_suffix(".jsonl.gz")))) == 3
 
 
 def test_of_two_studies_the_larger_is_shown_and_ours_where_equal(folder: Path) -> None:
-    path = study.run("90", "decay", 4, RESULTS, workers=1)
+    path = sampling.run("90", "decay", 4, RESULTS, workers=1)
     assert path == RESULTS / "studies/decay.json"
     (folder / "shipped/study").mkdir(parents=True)
-    for samples, shown in ((3, 4), (4, 4), (9, 9)):
+    for size, shown in ((3, 4), (4, 4), (9, 9)):
         for name in ("decay", "other"):
             (folder / f"shipped/study/{name}.json").write_text(
-                f'{{"chapter": "90", "experiment": "{name}", "samples": {samples}, "varied": {{}}, "claims": {{}}}}'
+                f'{{"chapter": "90", "experiment": "{name}", "samples": {size}, "varied": {{}}, "claims": {{}}}}'
             )
-        decay, other = study.stored(RESULTS)
+        decay, other = summaries.stored(RESULTS)
         assert decay["samples"] == shown
-        assert bool(decay["claims"]) == (samples < 9)
-        assert other["samples"] == samples
+        assert bool(decay["claims"]) == (size < 9)
+        assert other["samples"] == size
 
 
 def test_an_unknown_claim_is_refused(folder: Path) -> None:
     with pytest.raises(InputError, match=r"did you mean 'C90.01'"):
-        study.experiments_of("90", [], "C90.1")
+        sampling.experiments_of("90", [], "C90.1")
 
 
 def test_a_claim_that_is_not_testable_is_refused_with_the_reason() -> None:
     with pytest.raises(InputError, match=r"claim = C1.17 is not allowed: it is not testable: Fatigue"):
-        study.experiments_of("1", [], "C1.17")
+        sampling.experiments_of("1", [], "C1.17")
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from dexrepro.keys import SELECTION
 
 if TYPE_CHECKING:
     from dexrepro.baselines import ChapterReport
-    from dexrepro.study import Cases
+    from dexrepro.study.samples import Cases
 
 
 @command(
@@ -143,19 +143,20 @@ def study_command(options: argparse.Namespace) -> int:
 
 
 def _study(words: Sequence[str], update: bool = False, confirm: bool = False, shown: bool = True) -> int:
-    from dexrepro import study
     from dexrepro.config import check_engine
     from dexrepro.physics.engine import default
     from dexrepro.selection import selected
+    from dexrepro.study import sampling
+    from dexrepro.study.confirm import confirm as carry
 
     numbers, only, results, workers, values = selected(words, "study")
     _refuse_own(numbers, update)
     samples, hours = _samples(values.get("samples")), _hours(values.get("hours"))
     check_engine(engine := values.get("engine", default()))
     for number in numbers:
-        for name in study.experiments_of(number, only, values.get("claim")):
+        for name in sampling.experiments_of(number, only, values.get("claim")):
             if confirm:
-                carried, other = study.confirm(number, name, results, update)
+                carried, other = carry(number, name, results, update)
                 differ = f"; other numbers than before: {', '.join(other)}" if other else ""
                 say(f"{name}: {carried} cases of samples carried over{differ}")
                 continue
@@ -163,9 +164,9 @@ def _study(words: Sequence[str], update: bool = False, confirm: bool = False, sh
                 cases = _cases(number, name, values)
                 if cases and update:
                     raise InputError(f"case = {values['case']} is not allowed with --update: what is shipped is whole")
-                path = study.run(number, name, samples, results, workers=workers, hours=hours, update=update,
-                                 engine=engine, only=cases)  # fmt: skip
-            except study.SamplesFailed as error:
+                path = sampling.run(number, name, samples, results, workers=workers, hours=hours, update=update,
+                                    engine=engine, only=cases)  # fmt: skip
+            except sampling.SamplesFailed as error:
                 warn(error)
                 return FAILED
             if shown:
@@ -174,9 +175,9 @@ def _study(words: Sequence[str], update: bool = False, confirm: bool = False, sh
 
 
 def _cases(number: str, name: str, values: Mapping[str, str]) -> Cases:
-    from dexrepro import study
+    from dexrepro.study.sampling import cases_of
 
-    return study.cases_of(number, name, values["case"].strip("[]")) if "case" in values else ()
+    return cases_of(number, name, values["case"].strip("[]")) if "case" in values else ()
 
 
 def _refuse_own(numbers: Sequence[str], update: bool) -> None:
@@ -200,8 +201,9 @@ def _hours(text: str | None) -> float | None:
 
 def _study_jobs(options: argparse.Namespace) -> int:
     """A study by jobs of a Hydra launcher, which share its samples."""
-    from dexrepro import study
     from dexrepro.selection import selected
+    from dexrepro.study.samples import summary_file
+    from dexrepro.study.sampling import experiments_of
 
     values = dict(text.partition("=")[::2] for text in options.selection)
     jobs = whole_number("jobs", values.pop("jobs", ""), 1, 1024)
@@ -211,9 +213,9 @@ def _study_jobs(options: argparse.Namespace) -> int:
     _refuse_own(numbers, options.update)
     _samples(values.get("samples")), _hours(values.get("hours"))
     made = [
-        (name, study.summary_file(name, folder, only=_cases(number, name, values)))
+        (name, summary_file(name, folder, only=_cases(number, name, values)))
         for number in numbers
-        for name in study.experiments_of(number, only, values.get("claim"))
+        for name in experiments_of(number, only, values.get("claim"))
     ]
     selection = ",".join(json.dumps(text) for text in words)
     results = [text for text in words if text.startswith("results=")]

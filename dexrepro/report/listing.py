@@ -9,7 +9,7 @@ from dexrepro import baselines, chapters
 from dexrepro.claims import filled
 from dexrepro.config import compose_chapter, config_files, experiment_cases, settings
 from dexrepro.disk_cache import cached
-from dexrepro.study import robustness_of
+from dexrepro.study.summaries import robustness_of
 
 
 def listing() -> dict[str, Any]:

@@ -12,7 +12,7 @@ from typing import Any
 
 import jinja2
 
-from dexrepro import __version__, chapters, crosscheck, study
+from dexrepro import __version__, chapters, crosscheck
 from dexrepro.claims import TIE
 from dexrepro.errors import InputError
 from dexrepro.report import equations, explorer, studies, symbols, verdicts, words
@@ -20,6 +20,7 @@ from dexrepro.report.contents import Contents
 from dexrepro.report.damage import check_result
 from dexrepro.report.sources import Sources
 from dexrepro.storage import read_json, whole_folder
+from dexrepro.study import summaries
 
 KINDS = {
     "error": "Inconsistent with the book's own equations: derived, with measured evidence.",
@@ -63,7 +64,7 @@ class _Report:
         self.code = Sources(folder)
 
     def write(self) -> None:
-        stored, runs = study.stored(self.results), self._own_runs()
+        stored, runs = summaries.stored(self.results), self._own_runs()
         known = {item["experiment"]: {**item, "draws": studies.samples(item, self.results)} for item in stored}
         places = {number: _results(self.results / f"chapter{number}") for number in chapters.numbers()}
         book = [Contents(n, found, self.folder, self.code, known).page(runs) for n, found in places.items()]

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from dexrepro import baselines, chapters, study
+from dexrepro import baselines, chapters
 from dexrepro.claims import Claim, Erratum, filled
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
 from dexrepro.errors import InputError, nearest
@@ -19,6 +19,7 @@ from dexrepro.report import equations, parameters, relations, sources, verdicts,
 from dexrepro.report.damage import check_result
 from dexrepro.report.listing import chapter_listing
 from dexrepro.storage import read_json
+from dexrepro.study import draws, summaries
 
 
 def show(word: str, results: Path) -> Iterator[str]:
@@ -59,7 +60,7 @@ def _claim(word: str, results: Path) -> Iterator[str]:
 def _about_claim(number: str, claim: Claim, results: Path) -> Iterator[str]:
     name, chapter, composed = claim.experiment, chapters.load(number), compose_chapter(number)
     where, metrics = _metrics(number, name, results) if name else ("", {})
-    row = next((s["claims"].get(claim.id) for s in study.stored(results) if s["experiment"] == name), None)
+    row = next((s["claims"].get(claim.id) for s in summaries.stored(results) if s["experiment"] == name), None)
     shown: dict[str, Any] = claim.evaluate(metrics, settings(composed, name) if name else {}).as_dict()
     shown |= {"study": row, "robustness": verdicts.robustness(row)}
     place = ", ".join(filter(None, [f"Fig. {claim.figure}" if claim.figure else "", words.section(claim.where), name]))
@@ -94,7 +95,7 @@ def _about_claim(number: str, claim: Claim, results: Path) -> Iterator[str]:
     if mentioned := equations.numbers(texts):
         yield f"  equations   {', '.join(f'({equation})' for equation in mentioned)}"
     if name:
-        for key, origin in study.parameters(number, name).items():
+        for key, origin in draws.parameters(number, name).items():
             row = {"key": key, "value": parameters.value_of(composed, key), **parameters.shown(origin)}
             yield f"  varies      {_parameter(row)}"
     yield from _written(number, claim.id)

@@ -10,11 +10,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from dexrepro import chapters
-from dexrepro.baselines import baseline_dir
 from dexrepro.claims import FRAGILE, OPEN, ROBUST, Claim
 from dexrepro.report import style, verdicts
 from dexrepro.result import flat
-from dexrepro.study import read_samples
+from dexrepro.study.samples import read_samples, samples_file, summary_file
 
 ROW = 0.2  # inch a claim
 EDGES = (0.62, 0.42)  # inch above and below the rows
@@ -79,12 +78,11 @@ def samples(study: Mapping[str, Any], results: Path) -> list[dict[str, Any]]:
     Margins are those of claims about single cases; a number over several cases is not made again.
     """
     name = study["experiment"]
-    for path in (results / "studies" / f"{name}.jsonl", baseline_dir() / "study" / f"{name}.jsonl.gz"):
-        if path.exists():
-            entries = list(read_samples(path))
-            if len(entries) == study["samples"]:
-                claims = chapters.load(study["chapter"]).claims_of(name)
-                return [_sample(name, claims, entry) for entry in entries]
+    for shipped in (False, True):
+        entries = list(read_samples(samples_file(summary_file(name, results, shipped))))
+        if len(entries) == study["samples"]:
+            claims = chapters.load(study["chapter"]).claims_of(name)
+            return [_sample(name, claims, entry) for entry in entries]
     return []
 
 

@@ -149,7 +149,7 @@ def test_a_selection_that_selects_nothing_is_named(
 def test_what_is_shipped_is_not_renewed_by_what_is_the_users(
     toy: Path, command: Command, monkeypatch: pytest.MonkeyPatch, words: str
 ) -> None:
-    for module in ("study", "crosscheck"):
+    for module in ("study.samples", "crosscheck"):
         monkeypatch.setattr(f"dexrepro.{module}.baseline_dir", lambda: toy / "shipped")
     status, said = command(f"{words} --update")
     assert status == 2

@@ -17,10 +17,11 @@ from typing import Any
 import pytest
 from conftest import Command
 
-from dexrepro import baselines, study
+from dexrepro import baselines
 from dexrepro.errors import InputError
 from dexrepro.report.damage import is_safe
 from dexrepro.storage import read_json, write_json
+from dexrepro.study import samples
 
 pytestmark = pytest.mark.usefixtures("bounded")
 Damage = Callable[[Path], object]
@@ -389,7 +390,7 @@ STUDIES = {
 
 @pytest.mark.parametrize("kind", STUDIES)
 def test_a_damaged_study_is_named(toy_result: Path, command: Command, kind: str) -> None:
-    path = study.summary_file("decay", Path("results"))
+    path = samples.summary_file("decay", Path("results"))
     path.parent.mkdir(parents=True)
     path.write_text(STUDIES[kind])
     status, said = command("report")
@@ -416,7 +417,7 @@ def test_damaged_samples_of_a_study_are_named(toy_result: Path, monkeypatch: pyt
     for content in (b"no gzip", gzip.compress(b"{}")[:-9]):
         path.write_bytes(content)
         with pytest.raises(InputError, match=r"samples\.jsonl\.gz holds no samples of a study"):
-            list(study.read_samples(path))
+            list(samples.read_samples(path))
 
 
 @pytest.mark.parametrize("content", ["", "[]", '{"runs": [5]}', '{"runs": [{"content": "a", "value": "b"}]}', "\0"])
@@ -434,7 +435,7 @@ LINES = ["", "null", "5", "[]", "{}", '{"index": "x"}', '{"index": 0}', '{"index
 
 
 def test_lines_of_a_study_that_are_none_do_not_count(toy_result: Path, command: Command) -> None:
-    path = study.summary_file("decay", Path("results")).with_suffix(".jsonl")
+    path = samples.summary_file("decay", Path("results")).with_suffix(".jsonl")
     path.parent.mkdir(parents=True)
     path.write_bytes("\n".join(LINES).encode() + b"\n\xff\xfe\n")
     status, said = command("study chapter=90 samples=2 workers=1")

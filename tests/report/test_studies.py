@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from dexrepro import cli, study
+from dexrepro import cli
 from dexrepro.plan import plan_chapter
 from dexrepro.report import page, studies
 from dexrepro.runner import run_plans
 from dexrepro.storage import write_json
+from dexrepro.study import samples, summaries
 
 
 def entry(index: int, largest: float) -> dict:
@@ -28,7 +29,7 @@ def entries() -> list[dict]:
 
 @pytest.fixture
 def summary(toy: Path, entries: list[dict]) -> dict:
-    return study.summary("90", "decay", entries)
+    return summaries.summary("90", "decay", entries)
 
 
 def test_the_margin_is_summarised_by_quantiles(summary: dict) -> None:
@@ -61,7 +62,7 @@ def test_the_figure_shows_shares_intervals_and_what_a_claim_follows(summary: dic
 
 
 def test_the_report_shows_stored_studies(summary: dict, toy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(study, "baseline_dir", lambda: toy / "baselines")
+    monkeypatch.setattr(samples, "baseline_dir", lambda: toy / "baselines")
     (toy / "baselines/study").mkdir(parents=True)
     write_json(toy / "baselines/study/decay.json", summary)
     plans, _ = plan_chapter("90")

@@ -1,0 +1,168 @@
+"""A sample: the cases of one draw, run; and the files that keep samples, one a line."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import time
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import chdir, nullcontext, suppress
+from pathlib import Path
+from typing import Any
+
+from dexrepro import chapters
+from dexrepro.baselines import baseline_dir
+from dexrepro.case import live
+from dexrepro.case import run as run_case
+from dexrepro.claims import Claim
+from dexrepro.errors import InputError
+from dexrepro.experiment import Config, Metrics
+from dexrepro.physics import engine as physics
+from dexrepro.physics.engine import REFERENCE
+from dexrepro.plan import content_of, uses_engine
+from dexrepro.result import flat, summarise
+from dexrepro.storage import digest_of, finite, opened, write_text
+from dexrepro.study.draws import draw
+
+Cases = tuple[str, ...]
+
+
+def evaluate(
+    chapter: str, experiment: str, index: int, known: Mapping[str, Any], engine: str = REFERENCE, only: Cases = ()
+) -> dict[str, Any]:
+    """One sample: what was drawn and, of every case that a claim is about, the key of its simulation and its metrics.
+
+    known: cases that were run before, by the key of their simulation; they are taken over. engine: of the simulations;
+    a sample says which it was, where it is not that of the baselines. only: some of the cases.
+    """
+    physics.use(engine)
+    definition, cases = chapters.load(chapter).experiment(experiment), {}
+    told = {} if engine == REFERENCE else {"engine": engine}
+    values, configs = _configurations(chapter, experiment, {"index": index, **told}, only)
+    for case, config in configs.items():
+        content = content_of(definition, config)
+        if content in known:
+            cases[case] = known[content]
+            continue
+        start = time.process_time()
+        try:
+            with chdir("."), physics.unseen() if uses_engine(definition) else nullcontext():  # a law may go elsewhere
+                metrics = run_case(definition, live(config), config["seed"])[1]
+            found: dict[str, Any] = {"metrics": _rounded(finite(metrics))}
+        except Exception as problem:
+            found = {"error": f"{type(problem).__name__}: {' '.join(str(problem).split())}"}
+        cases[case] = {"content": content, **found, "seconds": round(time.process_time() - start, 3)}
+    return {"index": index, "values": values, "cases": cases, **told}
+
+
+def _configurations(
+    chapter: str, experiment: str, entry: Mapping[str, Any], only: Cases
+) -> tuple[dict[str, float | str], dict[str, dict[str, Any]]]:
+    """The values drawn for a sample, and under them every case that a claim is about."""
+    values, block = draw(chapter, experiment, entry["index"])
+    told = {"perturbation": 0.0, "seed": int(values["seed"])}
+    told |= {"engine": entry["engine"]} if "engine" in entry else {}
+    names = needed_cases(chapters.load(chapter).claims_of(experiment), block["cases"], only)
+    return values, {case: {**block["cases"][case], **told, "case": case} for case in names}
+
+
+def contents(chapter: str, experiment: str, entry: Mapping[str, Any], only: Cases = ()) -> dict[str, str]:
+    """The key of the present simulation of every case that a claim is about, in one sample."""
+    definition = chapters.load(chapter).experiment(experiment)
+    configs = _configurations(chapter, experiment, entry, only)[1]
+    return {case: content_of(definition, config) for case, config in configs.items()}
+
+
+def metrics_of(chapter: str, experiment: str, entry: Mapping[str, Any]) -> Metrics:
+    """All metrics of a sample by their full names, with those over several cases; a case that failed has none."""
+    nested: dict[str, Metrics] = {
+        case: dict(row["metrics"]) for case, row in entry["cases"].items() if "metrics" in row
+    }
+    definition = chapters.load(chapter).experiment(experiment)
+    if definition.function("summarise") and len(nested) == len(entry["cases"]):
+        block = draw(chapter, experiment, entry["index"])[1]
+        if len(nested) == len(block["cases"]):
+            summarise(definition, nested, Config.of(block))
+    return finite(flat(experiment, nested))
+
+
+def _rounded(numbers: Mapping[str, float | None]) -> dict[str, float | None]:
+    return {key: value if value is None else float(f"{value:.6g}") for key, value in numbers.items()}
+
+
+def needed_cases(claims: Sequence[Claim], cases: Iterable[str], only: Cases = ()) -> list[str]:
+    """The cases that the claims are about, all as soon as a claim needs a number over several; of them only some."""
+    if only:
+        return [case for case in cases if case in only]
+    parts = [name.split(".") for claim in claims for name in claim.metrics]
+    if any(len(part) < 3 for part in parts):
+        return list(cases)
+    return [case for case in cases if any(part[1] == case for part in parts)]
+
+
+def studies_folder(results: Path, shipped: bool = False) -> Path:
+    """Where studies are kept: among the user's results, or beside the baselines that are shipped."""
+    return baseline_dir() / "study" if shipped else results / "studies"
+
+
+def summary_file(experiment: str, results: Path, shipped: bool = False, only: Cases = ()) -> Path:
+    """Where the summary of a study is kept, or of one of some cases ``only``."""
+    if only:
+        return studies_folder(results) / "cases" / f"{experiment}-{digest_of([*only])[:10]}.json"
+    return studies_folder(results, shipped) / f"{experiment}.json"
+
+
+def samples_file(summary: Path) -> Path:
+    """Samples beside a summary: plain where they grow, compressed where they are shipped."""
+    return summary.with_suffix(".jsonl.gz" if summary.parent == studies_folder(Path(), shipped=True) else ".jsonl")
+
+
+def add_sample(path: Path, entry: Mapping[str, Any]) -> None:
+    """Add a sample to a file, whose last line may have been cut short."""
+    with open(path, "a+b") as file:
+        file.seek(max(file.tell() - 1, 0))
+        cut_short = file.read(1) not in (b"", b"\n")
+        file.write(b"\n" * cut_short + _line(entry).encode())
+
+
+def write_samples(path: Path, entries: Sequence[Mapping[str, Any]]) -> None:
+    """Keep samples in a file in place of those that it holds."""
+    text = "".join(map(_line, entries))
+    if path.suffix == ".gz":
+        path.write_bytes(gzip.compress(text.encode(), mtime=0))
+    else:
+        write_text(path, text)
+
+
+def _line(entry: Mapping[str, Any]) -> str:
+    return json.dumps(entry) + "\n"
+
+
+def read_samples(path: Path) -> Iterator[dict[str, Any]]:
+    """The samples of a file; what is none (a line may have been cut short) is left out."""
+    try:
+        data = b""
+        if path.exists():
+            with opened(path) as file:
+                data = file.read()
+        lines = (gzip.decompress(data) if path.suffix == ".gz" and data else data).splitlines()
+    except (OSError, EOFError, zlib.error) as error:
+        raise InputError(f"{path} holds no samples of a study ({error}); remove it") from error
+    for line in lines:
+        with suppress(ValueError, RecursionError, TypeError, LookupError, AttributeError):
+            entry = json.loads(line)
+            sound = isinstance(entry["index"], int) and entry["index"] >= 0 and isinstance(entry["values"], dict)
+            if sound and all(isinstance(row["content"], str) for row in entry["cases"].values()):
+                yield entry
+
+
+def all_samples(experiment: str, results: Path) -> Iterator[dict[str, Any]]:
+    """Samples that are shipped, then those made here, whatever simulation made them."""
+    for shipped in (True, False):
+        yield from read_samples(samples_file(summary_file(experiment, results, shipped)))
+
+
+def shipped_samples(experiment: str) -> list[dict[str, Any]]:
+    """The samples that are shipped, whatever simulation made them."""
+    return list(read_samples(samples_file(summary_file(experiment, Path(), shipped=True))))
