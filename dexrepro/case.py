@@ -9,6 +9,7 @@ import re
 import time
 import zlib
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import chdir
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,15 @@ def run(experiment: Experiment, config: Config, seed: int) -> tuple[Recording, M
     recording = experiment.simulation.simulate(config, lambda purpose: generator(seed, experiment.name, purpose))
     wall = time.perf_counter() - start
     return recording, experiment.simulation.measure(recording, config), wall
+
+
+def measured(experiment: Experiment, config: Mapping[str, Any]) -> Metrics:
+    """Metrics of a case whose configuration says all, its seed and engine too; nothing else is kept, no picture made."""
+    from dexrepro.physics import engine
+
+    engine.use(config.get("engine", engine.REFERENCE))
+    with chdir("."), engine.unseen():  # a law may go elsewhere
+        return finite(run(experiment, live(config), config["seed"])[1])
 
 
 def live(config: Mapping[str, Any]) -> Config:

@@ -189,23 +189,31 @@ def _plan(
         check_words(values, words_of(chapter, name), name)
         check_sizes(values, times_of(chapter, name), name)
     experiment, engine = chapters.load(chapter).experiment(name), str(config["engine"] or default())
-    told = {"engine": engine} if uses_engine(experiment) and engine != REFERENCE else {}
+    told = engine if uses_engine(experiment) else REFERENCE
     if engine != default() and uses_engine(experiment):
         differs.append(f"engine={engine}")
     folder = results / f"chapter{chapter}" / name
     if differs:
         label = block["name"] if chapter == chapters.OWN else name
-        folder = results / "runs" / f"{label}-{digest_of([cases, seed, *told.values()])[:10]}"
+        folder = results / "runs" / f"{label}-{digest_of([cases, seed, *([told] if told != REFERENCE else [])])[:10]}"
     plan = Plan(chapter, name, block, [], folder, seed, engine, differs)
     versions = list(plan.versions.values())
     for case, values in cases.items():
-        values = {**values, "perturbation": perturbation, "seed": seed, "case": case, **told}
+        values = case_values(values, case, seed, told, perturbation)
         own = own_digest(values)
         content = content_of(experiment, values, own)
         cached = results / ".cache" / name / f"{case}-{digest_of([content, versions])[:16]}"
         plan.jobs.append(Job(chapter, name, case, values, seed, content, own, str(cached), bool(config["gui"]),
                              config["case_timeout"]))  # fmt: skip
     return plan
+
+
+def case_values(
+    values: Mapping[str, Any], case: str, seed: int, engine: str = REFERENCE, perturbation: float = 0.0
+) -> dict[str, Any]:
+    """The configuration of a case with what it is told beside its values (``experiment.ADDED``)."""
+    told = {} if engine == REFERENCE else {"engine": engine}
+    return {**values, "perturbation": perturbation, "seed": seed, "case": case, **told}
 
 
 def _as_shipped(config: Mapping[str, Any], shipped: Mapping[str, Any]) -> bool:

@@ -15,7 +15,7 @@ import os
 import re
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import chdir, suppress
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
@@ -26,18 +26,18 @@ from scipy import stats
 
 from dexrepro import chapters
 from dexrepro.arrays import Array
-from dexrepro.case import live, targets
-from dexrepro.case import run as run_case
+from dexrepro.case import measured, targets
 from dexrepro.checks import is_number, leaves, set_value, value_at
 from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.control.contract import KINDS, is_plain
 from dexrepro.errors import InputError, importable, nearest, refused
 from dexrepro.experiment import Metrics
-from dexrepro.plan import content_of, lacking, writable
+from dexrepro.physics.engine import default
+from dexrepro.plan import case_values, content_of, lacking, writable
 from dexrepro.pool import Failure, Pool
 from dexrepro.provenance import provenance
 from dexrepro.selection import chapters_of
-from dexrepro.storage import digest_of, finite, read_json, write_json
+from dexrepro.storage import digest_of, read_json, write_json
 from dexrepro.study.draws import within
 
 ROUNDS, SHRINK = 4, 0.4  # boxes around the best, each this share as wide as the one before
@@ -82,13 +82,11 @@ class Search:
         config = copy.deepcopy(self.values)
         for key, value in chosen.items():
             set_value(config, key, value)
-        return {**config, "perturbation": 0.0, "seed": self.seed, "case": self.case}
+        return case_values(config, self.case, self.seed, default())
 
     def metrics(self, chosen: Mapping[str, float]) -> Metrics:
         """What one run measures."""
-        definition = chapters.load(self.chapter).experiment(self.experiment)
-        with chdir("."):  # a law may go elsewhere
-            return finite(run_case(definition, live(self.config(chosen)), self.seed)[1])
+        return measured(chapters.load(self.chapter).experiment(self.experiment), self.config(chosen))
 
     def override(self, chosen: Mapping[str, float]) -> str:
         """The words that give the case these parameters; a list is given whole."""

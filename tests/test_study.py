@@ -153,7 +153,7 @@ def test_a_reworded_claim_costs_no_simulation(folder: Path, monkeypatch: pytest.
     chapter = chapters.load("90")
     changed = replace(chapter, claims=(other, *chapter.claims[1:]))
     monkeypatch.setattr(chapters, "load", lambda number: changed)
-    monkeypatch.setattr(samples, "run_case", lambda *_: pytest.fail("it was simulated again"))
+    monkeypatch.setattr(samples, "measured", lambda *_: pytest.fail("it was simulated again"))
     monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
     again = read_json(sampling.run("90", "decay", 4, RESULTS))
     assert again["claims"]["C90.01"]["predicate"] == "decay.fast.final < 0.5 decay.plain.final"
@@ -263,10 +263,8 @@ def test_only_the_cases_that_changed_run_again(folder: Path, monkeypatch: pytest
         samples, "content_of", lambda who, values: keys(who, values) + "new" * (values["case"] == "fast")
     )
     ran: list[str] = []
-    run_case = samples.run_case
-    monkeypatch.setattr(
-        samples, "run_case", lambda who, values, seed: ran.append(values.case) or run_case(who, values, seed)
-    )
+    measured = samples.measured
+    monkeypatch.setattr(samples, "measured", lambda who, values: ran.append(values["case"]) or measured(who, values))
     assert read_json(sampling.run("90", "decay", 2, RESULTS))["samples"] == 2
     assert ran == ["fast", "fast"]
 
@@ -275,19 +273,19 @@ def test_samples_are_carried_over_a_change_of_code_that_changes_no_number(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = sampling.run("90", "decay", 4, RESULTS, workers=1)
-    keys, run_case = samples.content_of, samples.run_case
+    keys, measured = samples.content_of, samples.measured
     monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
     monkeypatch.setattr(samples, "content_of", lambda who, values: keys(who, values) + "of other code")
 
-    def other(who: Any, values: Any, seed: int) -> Any:
-        recording, metrics, *rest = run_case(who, values, seed)
-        return recording, {**metrics, "final": metrics["final"] * (1.01 if values.case == "fast" else 1)}, *rest
+    def other(who: Any, values: Any) -> Any:
+        metrics = measured(who, values)
+        return {**metrics, "final": metrics["final"] * (1.01 if values["case"] == "fast" else 1)}
 
-    monkeypatch.setattr(samples, "run_case", other)
+    monkeypatch.setattr(samples, "measured", other)
     assert confirm("90", "decay", RESULTS) == (3 * 4, ["fast"])
-    monkeypatch.setattr(samples, "run_case", run_case)
+    monkeypatch.setattr(samples, "measured", measured)
     assert confirm("90", "decay", RESULTS) == (4, [])
-    monkeypatch.setattr(samples, "run_case", lambda *_: pytest.fail("it was simulated again"))
+    monkeypatch.setattr(samples, "measured", lambda *_: pytest.fail("it was simulated again"))
     assert read_json(sampling.run("90", "decay", 4, RESULTS)) == read_json(path)
 
 
@@ -295,14 +293,14 @@ def test_a_case_that_failed_twice_is_carried_over_only_where_it_failed_alike(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def failing(sentence: str) -> None:
-        def run(who: Any, values: Any, seed: int) -> Any:
-            if values.case == "fast":
+        def other(who: Any, values: Any) -> Any:
+            if values["case"] == "fast":
                 raise ValueError(sentence)
-            return run_case(who, values, seed)
+            return measured(who, values)
 
-        monkeypatch.setattr(samples, "run_case", run)
+        monkeypatch.setattr(samples, "measured", other)
 
-    keys, run_case = samples.content_of, samples.run_case
+    keys, measured = samples.content_of, samples.measured
     monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
     failing("the error grew to 1.25e3 m")
     sampling.run("90", "decay", 2, RESULTS, workers=1)

@@ -7,20 +7,18 @@ import json
 import time
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import chdir, nullcontext, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters
 from dexrepro.baselines import baseline_dir
-from dexrepro.case import live
-from dexrepro.case import run as run_case
+from dexrepro.case import measured
 from dexrepro.claims import Claim
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Metrics
-from dexrepro.physics import engine as physics
 from dexrepro.physics.engine import REFERENCE
-from dexrepro.plan import content_of, uses_engine
+from dexrepro.plan import case_values, content_of
 from dexrepro.result import flat, summarise
 from dexrepro.storage import digest_of, finite, opened, write_text
 from dexrepro.study.draws import draw
@@ -36,10 +34,8 @@ def evaluate(
     known: cases that were run before, by the key of their simulation; they are taken over. engine: of the simulations;
     a sample says which it was, where it is not that of the baselines. only: some of the cases.
     """
-    physics.use(engine)
     definition, cases = chapters.load(chapter).experiment(experiment), {}
-    told = {} if engine == REFERENCE else {"engine": engine}
-    values, configs = _configurations(chapter, experiment, {"index": index, **told}, only)
+    values, configs = _configurations(chapter, experiment, index, engine, only)
     for case, config in configs.items():
         content = content_of(definition, config)
         if content in known:
@@ -47,30 +43,26 @@ def evaluate(
             continue
         start = time.process_time()
         try:
-            with chdir("."), physics.unseen() if uses_engine(definition) else nullcontext():  # a law may go elsewhere
-                metrics = run_case(definition, live(config), config["seed"])[1]
-            found: dict[str, Any] = {"metrics": _rounded(finite(metrics))}
+            found: dict[str, Any] = {"metrics": _rounded(measured(definition, config))}
         except Exception as problem:
             found = {"error": f"{type(problem).__name__}: {' '.join(str(problem).split())}"}
         cases[case] = {"content": content, **found, "seconds": round(time.process_time() - start, 3)}
-    return {"index": index, "values": values, "cases": cases, **told}
+    return {"index": index, "values": values, "cases": cases} | ({} if engine == REFERENCE else {"engine": engine})
 
 
 def _configurations(
-    chapter: str, experiment: str, entry: Mapping[str, Any], only: Cases
+    chapter: str, experiment: str, index: int, engine: str, only: Cases
 ) -> tuple[dict[str, float | str], dict[str, dict[str, Any]]]:
     """The values drawn for a sample, and under them every case that a claim is about."""
-    values, block = draw(chapter, experiment, entry["index"])
-    told = {"perturbation": 0.0, "seed": int(values["seed"])}
-    told |= {"engine": entry["engine"]} if "engine" in entry else {}
+    values, block = draw(chapter, experiment, index)
     names = needed_cases(chapters.load(chapter).claims_of(experiment), block["cases"], only)
-    return values, {case: {**block["cases"][case], **told, "case": case} for case in names}
+    return values, {case: case_values(block["cases"][case], case, int(values["seed"]), engine) for case in names}
 
 
 def contents(chapter: str, experiment: str, entry: Mapping[str, Any], only: Cases = ()) -> dict[str, str]:
     """The key of the present simulation of every case that a claim is about, in one sample."""
     definition = chapters.load(chapter).experiment(experiment)
-    configs = _configurations(chapter, experiment, entry, only)[1]
+    configs = _configurations(chapter, experiment, entry["index"], entry.get("engine", REFERENCE), only)[1]
     return {case: content_of(definition, config) for case, config in configs.items()}
 
 
