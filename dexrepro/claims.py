@@ -10,7 +10,7 @@ import itertools
 import math
 import re
 import shlex
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
@@ -299,6 +299,12 @@ def about(figure: str, where: str = "", source: str = "book") -> Callable[..., C
         return Claim(id, figure, statement, predicate, **{"where": where, "source": source, **more})
 
     return claim
+
+
+def cases_in(metrics: Iterable[str]) -> tuple[list[str], bool]:
+    """The cases that metrics are of, each once, and whether a number over several cases is among them."""
+    parts = [name.split(".") for name in metrics]
+    return list(dict.fromkeys(part[1] for part in parts if len(part) > 2)), any(len(part) == 2 for part in parts)
 
 
 def filled(text: str, values: Mapping[str, Any]) -> str:

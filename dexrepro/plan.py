@@ -142,19 +142,24 @@ def _of_cases(plans: list[Plan], wanted: str | Sequence[str] | None) -> list[Pla
     patterns = [str(name) for name in (wanted if isinstance(wanted, list) else [wanted])]
     if not patterns:
         raise refused("case", "[]", "name a case")
-    names = [job.case for plan in plans for job in plan.jobs]
-    for pattern in patterns:
-        if not fnmatch.filter(names, pattern):
-            raise InputError(f"unknown case '{pattern}': {nearest(pattern, dict.fromkeys(names))}")
+    wanted = matching(patterns, [job.case for plan in plans for job in plan.jobs])
     result = []
     for plan in plans:
-        jobs = [job for job in plan.jobs if any(fnmatch.fnmatchcase(job.case, pattern) for pattern in patterns)]
+        jobs = [job for job in plan.jobs if job.case in wanted]
         if 0 < len(jobs) < len(plan.jobs):
             label, chosen = plan.folder.name.rpartition("-")[0] or plan.folder.name, [job.case for job in jobs]
             folder = plan.folder.parents[1] / "runs" / f"{label}-{digest_of([plan.folder.name, chosen])[:10]}"
             plan = replace(plan, jobs=jobs, folder=folder, differs=[*plan.differs, f"{PARTIAL}{','.join(chosen)}"])
         result += [plan] if jobs else []
     return result
+
+
+def matching(patterns: Sequence[str], names: Sequence[str], of: str = "") -> list[str]:
+    """The names of cases that patterns mean. Raises InputError for one that means none."""
+    for pattern in patterns:
+        if not fnmatch.filter(names, pattern):
+            raise InputError(f"unknown case '{pattern}'{of}: {nearest(pattern, dict.fromkeys(names))}")
+    return [name for name in names if any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)]
 
 
 def lacking(experiment: Experiment) -> str:

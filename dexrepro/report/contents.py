@@ -16,7 +16,7 @@ from PIL import Image
 
 from dexrepro import chapters
 from dexrepro.checks import leaves
-from dexrepro.claims import Claim, Erratum, filled
+from dexrepro.claims import Claim, Erratum, cases_in, filled
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
 from dexrepro.experiment import Experiment
 from dexrepro.plan import lacking, outdated, plan_chapter
@@ -159,7 +159,7 @@ class Contents:
         """A claim as evaluated, with all that belongs to it."""
         touching = relations.errata_of(claim, self.chapter.errata, self.composed) if claim else []
         text = " ".join([entry["statement"], entry["note"], entry["where"], *(item.equation for item in touching)])
-        names = [name.split(".") for name in entry["values"]]
+        cases, over_several = cases_in(entry["values"])
         shown = {**entry, "study": row, "robustness": verdicts.robustness(row), "chapter": self.number}
         beside = filled(claim.beside, self.metrics) if claim else ""
         return {
@@ -172,10 +172,10 @@ class Contents:
             "where": words.section(entry["where"]),
             "errata": touching,
             "equations": equations.numbers(text),
-            "cases": list(dict.fromkeys(part[1] for part in names if len(part) > 2)),
-            "over_cases": any(len(part) == 2 for part in names),
+            "cases": cases,
+            "over_cases": over_several,
             "line": self._line(entry["id"]),
-            "experiment": names[0][0] if names else "",
+            "experiment": next(iter(entry["values"]), "").partition(".")[0],
         }
 
     def _erratum(self, item: Erratum) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import baselines, chapters
-from dexrepro.claims import Claim, Erratum, filled
+from dexrepro.claims import Claim, Erratum, cases_in, filled
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
 from dexrepro.errors import InputError, nearest
 from dexrepro.plan import matches
@@ -101,9 +101,8 @@ def _about_claim(number: str, claim: Claim, results: Path) -> Iterator[str]:
     yield from _written(number, claim.id)
     if name:
         yield from _code(number, name)
-        cases = {part[1] for part in (metric.split(".") for metric in claim.metrics) if len(part) > 2}
-        every = any(metric.count(".") < 2 for metric in claim.metrics)
-        some = "" if every else f" 'case=[{','.join(sorted(cases))}]'"
+        cases, over_several = cases_in(claim.metrics)
+        some = "" if over_several else f" 'case=[{','.join(sorted(cases))}]'"
         own = chapters.option(number)
         yield f"  $ dexrepro run{own} chapter={number} only={name}{some}"
         yield f"  $ dexrepro check{own} chapter={number} only={name}"

@@ -14,7 +14,7 @@ from typing import Any
 from dexrepro import chapters
 from dexrepro.baselines import baseline_dir
 from dexrepro.case import measured
-from dexrepro.claims import Claim
+from dexrepro.claims import Claim, cases_in
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Metrics
 from dexrepro.physics.engine import REFERENCE
@@ -87,10 +87,8 @@ def needed_cases(claims: Sequence[Claim], cases: Iterable[str], only: Cases = ()
     """The cases that the claims are about, all as soon as a claim needs a number over several; of them only some."""
     if only:
         return [case for case in cases if case in only]
-    parts = [name.split(".") for claim in claims for name in claim.metrics]
-    if any(len(part) < 3 for part in parts):
-        return list(cases)
-    return [case for case in cases if any(part[1] == case for part in parts)]
+    about, over_several = cases_in(name for claim in claims for name in claim.metrics)
+    return [case for case in cases if over_several or case in about]
 
 
 def studies_folder(results: Path, shipped: bool = False) -> Path:

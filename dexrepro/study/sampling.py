@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import fnmatch
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters, crosscheck
-from dexrepro.claims import LOOKS, OPEN
+from dexrepro.claims import LOOKS, OPEN, cases_in
 from dexrepro.errors import InputError, nearest
 from dexrepro.physics.engine import REFERENCE
-from dexrepro.plan import uses_engine
+from dexrepro.plan import matching, uses_engine
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.storage import claimed, locked, write_json
 from dexrepro.study import samples
@@ -46,13 +45,10 @@ def cases_of(chapter: str, experiment: str, wanted: str) -> Cases:
     """The cases that names and patterns parted by commas mean. Raises InputError where one means none, or no claim is
     about them alone."""
     names = list(draw(chapter, experiment, 0)[1]["cases"])
-    for pattern in wanted.split(","):
-        if not fnmatch.filter(names, pattern):
-            raise InputError(f"unknown case '{pattern}' of {experiment}: {nearest(pattern, names)}")
-    chosen = tuple(name for name in names if any(fnmatch.fnmatchcase(name, p) for p in wanted.split(",")))
+    chosen = tuple(matching(wanted.split(","), names, f" of {experiment}"))
     predicates = [claim.predicate for claim in chapters.load(chapter).claims_of(experiment) if claim.predicate]
-    about = [{name.split(".")[1] if name.count(".") > 1 else "" for name in found.metrics} for found in predicates]
-    if not any(cases <= set(chosen) for cases in about):
+    about = [cases_in(predicate.metrics) for predicate in predicates]
+    if not any({*cases} <= {*chosen} and not over_several for cases, over_several in about):
         raise InputError(f"case = {wanted} is not allowed: no claim of {experiment} is about these cases alone")
     return chosen
 
