@@ -21,11 +21,11 @@ from typing import Any
 
 from dexrepro import chapters
 from dexrepro.checks import is_number
-from dexrepro.config import selecting
+from dexrepro.config import baseline_dir, selecting
+from dexrepro.damage import check_result, read_table
 from dexrepro.errors import InputError, one_line
 from dexrepro.plan import Plan, outdated, plan_chapter, select
 from dexrepro.pool import BLAS_THREADS
-from dexrepro.report.damage import check_result, read_table
 from dexrepro.runner import run_plans
 from dexrepro.storage import read_json, require, write_json
 
@@ -41,12 +41,6 @@ TABLE = 0.05  # by which a number of a table may change where no metric of its d
 
 class ResultsMissing(Exception):
     """There is nothing to compare; the message names the command to run."""
-
-
-def baseline_dir() -> Path:
-    """Where baselines are stored: in an installed wheel, or in results/baselines of a checkout."""
-    inside = Path(__file__).parent / "baselines"
-    return inside if inside.is_dir() else Path(__file__).parent.parent / "results" / "baselines"
 
 
 def baseline_file(chapter: str, experiment: str) -> Path:

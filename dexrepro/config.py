@@ -36,6 +36,12 @@ def config_dir() -> Path:
     return inside if inside.is_dir() else Path(__file__).parent.parent / "conf"
 
 
+def baseline_dir() -> Path:
+    """Where baselines are stored: in an installed wheel, or in results/baselines of a checkout."""
+    inside = Path(__file__).parent / "baselines"
+    return inside if inside.is_dir() else Path(__file__).parent.parent / "results" / "baselines"
+
+
 def config_files(chapter: str) -> dict[str, Path]:
     """Where the parameters of a chapter stand: the file of each of its experiments, and of ``shared`` values.
 

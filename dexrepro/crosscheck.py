@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from dexrepro import chapters
-from dexrepro.baselines import Baseline, agrees, baseline_dir
+from dexrepro.baselines import Baseline, agrees
 from dexrepro.claims import NOT_EVALUATED
-from dexrepro.config import selecting
+from dexrepro.config import baseline_dir, selecting
 from dexrepro.errors import InputError, one_line
 from dexrepro.plan import Plan, plan_chapter, uses_engine
 from dexrepro.progress import Silent

@@ -10,6 +10,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as RichProgress
 
+from dexrepro.timings import duration, timings
+
 if TYPE_CHECKING:
     from dexrepro.result import CaseEntry
 
@@ -125,8 +127,6 @@ class Bar(Lines):
 
 def expected(cases: Sequence[str]) -> dict[str, float]:
     """Seconds [s] that each case ``experiment.case`` took when it was measured; of a new one its experiment's mean."""
-    from dexrepro.timings import timings
-
     seconds: dict[str, float] = timings().get("cases", {})
     by_experiment: dict[str, list[float]] = {}
     for name, value in seconds.items():
@@ -134,17 +134,6 @@ def expected(cases: Sequence[str]) -> dict[str, float]:
     means = {name: sum(values) / len(values) for name, values in by_experiment.items()}
     known = {name: seconds.get(name, means.get(name.partition(".")[0])) for name in cases}
     return {name: value for name, value in known.items() if value is not None}
-
-
-def duration(seconds: float) -> str:
-    """A time as one says it: 40 s, 12 min, 2.5 h."""
-    return (
-        f"{seconds:.0f} s"
-        if seconds < 90
-        else f"{seconds / 60:.0f} min"
-        if seconds < 5400
-        else f"{seconds / 3600:.1f} h"
-    )
 
 
 def case_line(name: str, entry: CaseEntry) -> str:

@@ -9,23 +9,31 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any
 
+from dexrepro.config import baseline_dir
 from dexrepro.storage import read_json
 
 
 def timings() -> dict[str, Any]:
     """commands {command: {"machine": text, "first" and "again": {seconds, memory [GB], disk [GB]}}}, and cases
     {experiment.case: seconds}."""
-    from dexrepro.baselines import baseline_dir
-
     with suppress(OSError, ValueError):
         return dict(read_json(baseline_dir() / "measured.json"))
     return {}
 
 
+def duration(seconds: float) -> str:
+    """A time as one says it: 40 s, 12 min, 2.5 h."""
+    return (
+        f"{seconds:.0f} s"
+        if seconds < 90
+        else f"{seconds / 60:.0f} min"
+        if seconds < 5400
+        else f"{seconds / 3600:.1f} h"
+    )
+
+
 def markdown() -> str:
     """The README's table of what the two commands take."""
-    from dexrepro.progress import duration
-
     found = timings()
     if not found.get("commands"):
         return "`make measure` finds out what the two commands take on a machine."

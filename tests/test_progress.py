@@ -11,9 +11,10 @@ import pytest
 from conftest import Command, Shell
 from rich.console import Console
 
-from dexrepro import progress, timings
-from dexrepro.progress import Bar, Lines, duration
+from dexrepro import progress
+from dexrepro.progress import Bar, Lines
 from dexrepro.result import CaseEntry
+from dexrepro.timings import duration
 
 
 class Clock:
@@ -27,7 +28,7 @@ class Clock:
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     monkeypatch.setattr(progress, "time", clock := Clock())
     times = {"cases": {"long.a": 60.0, "long.b": 60.0, "long.c": 30.0}}
-    monkeypatch.setattr(timings, "timings", lambda: times)
+    monkeypatch.setattr(progress, "timings", lambda: times)
     return clock
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from dexrepro import baselines, chapters
 from dexrepro.claims import NOT_EVALUATED, Predicate, filled
-from dexrepro.config import compose_chapter, settings
+from dexrepro.config import baseline_dir, compose_chapter, settings
 from dexrepro.report import verdicts
 from dexrepro.study import summaries
 
@@ -27,7 +27,7 @@ def test_every_statement_has_been_seen_to_fail_or_says_why_it_cannot(number: str
     Those that never failed are listed on the page "How a verdict is made". Where the control holds as well as what is
     credited, the verdict "not attributed" rests on just that.
     """
-    studied = {key: row for item in summaries.stored(baselines.baseline_dir()) for key, row in item["claims"].items()}
+    studied = {key: row for item in summaries.stored(baseline_dir()) for key, row in item["claims"].items()}
     metrics = baselines.stored_values(number)
     evaluated = [claim.evaluate(metrics).as_dict() for claim in chapters.load(number).claims if claim.predicate]
     never = verdicts.never_failed([{**item, "study": studied.get(item["id"])} for item in evaluated])

@@ -100,7 +100,7 @@ def show_command(options: argparse.Namespace) -> int:
 def draw_command(options: argparse.Namespace) -> int:
     """``dexrepro draw [FOLDER ...] [key=value ...]``: figures and tables again from what is on disk."""
     from dexrepro import chapters
-    from dexrepro.report.damage import check_result
+    from dexrepro.damage import check_result
     from dexrepro.result import redraw
     from dexrepro.selection import selected
     from dexrepro.storage import read_json

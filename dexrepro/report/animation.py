@@ -16,13 +16,13 @@ from dexrepro.arrays import Array
 from dexrepro.case import live, refuse_foreign, targets
 from dexrepro.checks import value_at
 from dexrepro.config import compose_chapter
+from dexrepro.damage import check_result
 from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Experiment, Film, Recording
 from dexrepro.physics import rendering
 from dexrepro.physics.world import World
 from dexrepro.recordings import load_recording
 from dexrepro.report import style
-from dexrepro.report.damage import check_result
 from dexrepro.storage import read_json, read_yaml
 
 SIZE = (400, 330)

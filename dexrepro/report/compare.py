@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from dexrepro.checks import differences, leaves
+from dexrepro.damage import check_result
 from dexrepro.errors import InputError
 from dexrepro.recordings import load_recording
 from dexrepro.report import explorer, style, words
-from dexrepro.report.damage import check_result
 from dexrepro.report.page import templates
 from dexrepro.report.verdicts import changes
 from dexrepro.storage import read_json, read_yaml

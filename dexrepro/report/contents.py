@@ -18,11 +18,11 @@ from dexrepro import chapters
 from dexrepro.checks import leaves
 from dexrepro.claims import Claim, Erratum, cases_in, filled
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
+from dexrepro.damage import check_result, is_safe, read_picture, read_table
 from dexrepro.experiment import Experiment
 from dexrepro.plan import lacking, outdated, plan_chapter
 from dexrepro.provenance import provenance
 from dexrepro.report import equations, explorer, parameters, relations, sources, studies, verdicts, words
-from dexrepro.report.damage import check_result, is_safe, read_picture, read_table
 from dexrepro.report.style import file_stem
 from dexrepro.storage import read_json, read_yaml
 

@@ -18,13 +18,13 @@ from typing import Any
 import numpy as np
 
 from dexrepro.arrays import Array
+from dexrepro.damage import check_series
 from dexrepro.errors import InputError
 from dexrepro.experiment import Experiment, Film
 from dexrepro.physics.rendering import Camera, Solid
 from dexrepro.recordings import read_frame
 from dexrepro.report import words
 from dexrepro.report.animation import instants, recorded_scene
-from dexrepro.report.damage import check_series
 
 LONGEST = 4000  # samples of a case; of a longer one every k-th is shown
 SHORTEST = 10

@@ -14,10 +14,10 @@ import jinja2
 
 from dexrepro import __version__, chapters, crosscheck
 from dexrepro.claims import TIE
+from dexrepro.damage import check_result
 from dexrepro.errors import InputError
 from dexrepro.report import equations, explorer, studies, symbols, verdicts, words
 from dexrepro.report.contents import Contents
-from dexrepro.report.damage import check_result
 from dexrepro.report.sources import Sources
 from dexrepro.storage import read_json, whole_folder
 from dexrepro.study import summaries

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters
-from dexrepro.baselines import baseline_dir
 from dexrepro.case import measured
 from dexrepro.claims import Claim, cases_in
+from dexrepro.config import baseline_dir
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Metrics
 from dexrepro.physics.engine import REFERENCE

@@ -11,6 +11,7 @@ from dexrepro.chapters.chapter3.external_push import experiment as external_push
 from dexrepro.chapters.chapter3.fixed_opening import experiment as fixed_opening
 from dexrepro.chapters.chapter3.moving_opening import experiment as moving_opening
 from dexrepro.chapters.chapter3.settling_time import experiment as settling_time
+from dexrepro.config import baseline_dir
 from dexrepro.experiment import Config
 from dexrepro.robots.baxter import baxter, posture
 from dexrepro.robots.kinematics import jacobian, point_jacobian
@@ -106,7 +107,7 @@ def test_energy_of_the_error_dynamics_falls_and_large_errors_wait_hardly_longer(
 def test_a_claim_whose_control_holds_in_most_draws_of_its_study_says_so():
     silent, values = [], baselines.stored_values("3")
     for claim in chapters.load("3").claims:
-        path = baselines.baseline_dir() / "study" / f"{claim.experiment}.json"
+        path = baseline_dir() / "study" / f"{claim.experiment}.json"
         row = json.loads(path.read_text())["claims"].get(claim.id) if path.exists() else None
         if not row or row["predicate"] != str(claim.predicate) or row.get("control_fails") is None:
             continue

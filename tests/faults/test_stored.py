@@ -18,8 +18,8 @@ import pytest
 from conftest import Command
 
 from dexrepro import baselines
+from dexrepro.damage import is_safe
 from dexrepro.errors import InputError
-from dexrepro.report.damage import is_safe
 from dexrepro.storage import read_json, write_json
 from dexrepro.study import samples
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,7 +17,6 @@ from dexrepro.primitives.coupling import Term, coupled_rollout, dynamic_potentia
 from dexrepro.primitives.obstacles import Polygon, clearance
 
 RATE = 0.0
-Terms = Callable[[Polygon, Array, Array], Term]
 
 
 def simulate(config: Config, rng: Rng) -> Recording:
