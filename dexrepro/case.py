@@ -37,7 +37,7 @@ def run(experiment: Experiment, config: Config, seed: int) -> tuple[Recording, M
 
 
 def measured(experiment: Experiment, config: Mapping[str, Any]) -> Metrics:
-    """Metrics of a case whose configuration says all, its seed and engine too; nothing else is kept, no picture made."""
+    """Metrics of a case whose configuration says all, its seed and engine too; no picture is made."""
     from dexrepro.physics import engine
 
     engine.use(config.get("engine", engine.REFERENCE))
