@@ -26,15 +26,15 @@ PACKAGE = __name__.partition(".")[0]
 _SKIPPED = {"ctx", "type_comment", "kind", "annotation", "returns", "type_params"}
 
 
-def digest(roots: Iterable[Name]) -> str:
-    """Hash of all code that the roots can reach."""
-    roots = sorted(set(roots))
-    return str(cached(f"closure {roots}", lambda: _digest(roots)))
+def digest(roots: Iterable[Name], without: Iterable[Name] = ()) -> str:
+    """Hash of all code that the roots can reach; ``without``: names that are not run, whatever refers to them."""
+    roots, without = sorted(set(roots)), sorted(without)
+    return str(cached(f"closure {roots} {without}", lambda: _digest(roots, without)))
 
 
-def _digest(roots: Sequence[Name]) -> tuple[str, set[Path] | None]:
+def _digest(roots: Sequence[Name], without: Sequence[Name]) -> tuple[str, set[Path] | None]:
     """The hash, and the files and folders it follows from; None where the user's are among them, which may move."""
-    reached, files = _reached(roots), {Path(__file__)}
+    reached, files = _reached(roots, without), {Path(__file__)}
     parts = sorted(f"{module}:{name}:{text}" for (module, name), text in reached.items())
     for module in {module for module, _ in reached}:
         if (path := _file(module)) is not None:
@@ -66,12 +66,13 @@ def target(text: str) -> Name:
     return parts[0], ".".join(parts[1:])
 
 
-def _reached(roots: Iterable[Name]) -> dict[Name, str]:
+def _reached(roots: Iterable[Name], without: Iterable[Name] = ()) -> dict[Name, str]:
     found: dict[Name, str] = {}
+    left = {*without}
     todo = list(roots)
     while todo:
         module, name = todo.pop()
-        if (module, name) in found or (parsed := _module(module)) is None:
+        if (module, name) in found or (module, name) in left or (parsed := _module(module)) is None:
             continue
         if name == "":
             todo += [(module, defined) for defined in (*parsed.definitions, *parsed.imports)]

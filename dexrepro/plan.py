@@ -42,6 +42,8 @@ from dexrepro.storage import digest_of
 
 NUMERICAL = ("numpy", "scipy")  # packages whose version can change a number, beside the engine
 ENGINE = "dexrepro.physics.engine", "engine"  # what every scene and model is made by
+READERS = (("dexrepro.chapters.demonstrations", "recorded"), ("dexrepro.chapters.demonstrations", "corners"),
+           ("dexrepro.primitives.recorded", "read_path"))  # fmt: skip
 PARTIAL = "case="  # begins the word by which a result of some cases differs from the whole one
 
 
@@ -298,18 +300,20 @@ def content_of(experiment: Experiment, values: Mapping[str, Any], own: str | Non
 
 
 def code_digest(experiment: Experiment, values: Mapping[str, Any]) -> str:
-    """Hash of the code of this package that a case uses: its simulation and the laws that its values name."""
+    """Hash of the code of this package that a case uses: its simulation and the laws that its values name; of what
+    reads files of the user only where the values name one."""
     named = frozenset(text for text in targets(values) if text.startswith("dexrepro."))
-    return _code_digest(experiment.package, named, values.get("engine", REFERENCE))
+    reads = any(isinstance(text, str) and {*FILES} & {*key.split(".")} for key, text in leaves(values))
+    return _code_digest(experiment.package, named, values.get("engine", REFERENCE), reads)
 
 
 @lru_cache(maxsize=256)  # emptied before each planning: a session may edit files
-def _code_digest(package: str, named: frozenset[str], engine: str) -> str:
+def _code_digest(package: str, named: frozenset[str], engine: str, reads: bool) -> str:
     roots = [(f"{package}.experiment", name) for name in ("simulate", "measure", "RATE")]
     roots += [("dexrepro.case", "run"), ("dexrepro.case", "live"), ("dexrepro.recordings", "save_recording")]
     roots += map(closure.target, named)
     engines = [(f"dexrepro.physics.engines.{engine}", "")] if closure.reaches(roots, ENGINE) else []
-    return closure.digest([*roots, *engines])
+    return closure.digest([*roots, *engines], () if reads else READERS)
 
 
 @lru_cache(maxsize=256)

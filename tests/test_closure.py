@@ -52,6 +52,16 @@ def test_a_docstring_of_baxter_changes_no_case(edited: Callable[[str, str, str],
     assert contents("5") | contents("1", "hold_and_move") == before
 
 
+def test_what_reads_files_counts_where_a_file_is_named(edited: Callable[[str, str, str], None]) -> None:
+    experiment = chapters.load("5").experiment("letter_accuracy")
+    values = [{"demonstrations": named, "engine": "pybullet"} for named in (None, "letter.csv")]
+    before = [code_digest(experiment, value) for value in values]
+    edited("dexrepro.primitives.recorded", "FEWEST = 8", "FEWEST = 9")
+    plan._code_digest.cache_clear()
+    after = [code_digest(experiment, value) for value in values]
+    assert [a == b for a, b in zip(before, after, strict=True)] == [True, False]
+
+
 def test_code_of_baxter_changes_the_cases_with_that_arm_alone(edited: Callable[[str, str, str], None]) -> None:
     before, with_baxter = contents("5"), contents("1", "hold_and_move")
     edited(BAXTER, r"(\n    return )", r"\n    print()\1")
@@ -128,10 +138,10 @@ def test_every_function_that_runs_is_in_the_hash(
     plans, _ = plan_chapter(chapter, [f"only={experiment}", *overrides], write=False)
     definition, job = chapters.load(chapter).experiment(experiment), plans[0].jobs[0]
     roots: list[closure.Name] = []
-    monkeypatch.setattr(closure, "digest", lambda names: roots.extend(names) or "")
+    monkeypatch.setattr(closure, "digest", lambda names, _: roots.extend(names) or "")
     plan._code_digest.cache_clear()
     code_digest(definition, job.config)
-    reached = closure._reached(roots)
+    reached = closure._reached(roots, plan.READERS)
     seen: set[closure.Name] = set()
 
     def watch(frame, event, argument) -> None:

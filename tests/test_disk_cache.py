@@ -78,7 +78,7 @@ def test_a_folder_that_cannot_be_written_and_a_damaged_file_cost_time_alone(
 
 def test_kept_is_what_would_be_found_out_now() -> None:
     roots = [("dexrepro.chapters.chapter2.holding_line.experiment", "simulate")]
-    assert closure.digest(roots) == closure._digest(roots)[0]
+    assert closure.digest(roots) == closure._digest(roots, ())[0]
     assert compose_chapter("2", ["seed=3", "quiet=true", "figure='2.7'"]) == {
         **compose_chapter("2"), "seed": 3, "quiet": True, "figure": "2.7",
     }  # fmt: skip
