@@ -29,8 +29,8 @@ UNITS = {"", "-", *LENGTHS, *TIMES, *SPELT}
 ANGLES = {"deg", "degree", "degrees", "rad", "radian", "radians"}
 OTHERS = {*ANGLES, "px", "pixel", "pixels", "um", "µm", "μm", "micrometers", "micrometres", "microns", "km", "ft",
           "feet", "mps", "norm", "normalised", "normalized"}  # fmt: skip
-TIME = {"time", "t", "timestamp", "timestamps", "stamp", "datetime", "elapsed", "sec", "secs", "seconds", "zeit"}
-PLACE = {"x": "px", "y": "py", "z": "pz"}  # other names of columns, where nothing bears the plain one
+TIME = {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}
+OFTEN = {"time": {"datetime", "elapsed"}, "x": {"px"}, "y": {"py"}, "z": {"pz"}}  # where no column has the plain name
 NANO = {"nanosec", "nanosecs", "nsec", "nsecs"}  # of a stamp whose whole seconds stand beside
 NO_PLACE = {"orientation", "rotation", "rot", "angular", "angle", "euler", "quaternion", "quat", "q", "r", "twist",
             "linear", "velocity", "vel", "v", "u", "w", "omega", "speed", "dot", "ddot", "d", "dd", "delta", "diff",
@@ -342,7 +342,7 @@ def _column(wanted: str, names: Sequence[str]) -> int | None:
     plain = TIME if wanted == "time" else {wanted}
     for column, name in enumerate(names):
         words = {*_parts(name)}
-        if words & {*plain, PLACE.get(wanted)} and not words & NO_PLACE:
+        if words & (plain | OFTEN[wanted]) and not words & NO_PLACE:
             ranked.append((not words & plain, not {"position", "pos"} & words, len(_parts(name)), column))
     ranked.sort()
     if len(ranked) > 1 and ranked[0][:3] == ranked[1][:3]:

@@ -103,6 +103,8 @@ COMMAS = rows("{t};{x};{y}").replace(".", ",")
         "time,note,x,y\n" + rows("{t},trial 5 #3,{x},{y}"),
         rows("{t} {x} {y} // fine"),
         rows("{t},{x},{y}").replace("\n2.5", " # the pen rests\n2.5") + "# the end\n",
+        "elapsed,time,x,y\n" + rows("7,{t},{x},{y}"),
+        "datetime,x,y\n" + rows("2026-11-28 10:00:0{t},{x},{y}"),
         "time,px,py,vx,vy\n" + rows("{t},{x},{y},5,5"),
         "time,px,py,x,y\n" + rows("{t},5,5,{x},{y}"),
         "Time,PosX,PosY,VelX,VelY\n" + rows("{t},{x},{y},5,5"),
