@@ -14,13 +14,8 @@ from dexrepro.control.motion import Motion
 TINY = 1e-9  # error below which the secant slope of the root is no longer increased
 
 
-def signed_power(x: Real, power: float) -> Real:
-    """SIG^r(x), element by element: |x_i|^r sign(x_i), Eq. (3.12) without its square root."""
-    return np.sign(x) * np.abs(x) ** power
-
-
 def secant(x: Array, gains: Sequence[float], alpha: float, beta: float) -> Array:
-    """Slope k with k x = k1 x + k2 SIG^alpha(x) + k3 SIG^beta(x), shape of x."""
+    """Slope k with k x = k1 x + k2 SIG^alpha(x) + k3 SIG^beta(x), shape of x; SIG^r(x) = |x|^r sign(x), Eq. (3.12)."""
     size = np.maximum(np.abs(x), TINY)
     result: Array = gains[0] + gains[1] * size ** (alpha - 1.0) + gains[2] * size ** (beta - 1.0)
     return result
