@@ -200,17 +200,20 @@ def offer(chapter: str) -> None:
     ConfigStore.instance().store(f"{chapter}.yaml", defaults, group="chapter", package="_global_")
 
 
-def _changed(chapter: str) -> float:
-    return max(path.stat().st_mtime for path in (config_dir() / "config.yaml", *config_files(chapter).values()))
+def _changed(chapter: str) -> tuple[tuple[Path, float], ...]:
+    files = (config_dir() / "config.yaml", *config_files(chapter).values())
+    return tuple((path, path.stat().st_mtime) for path in files)
 
 
 @lru_cache(maxsize=16)
-def _shipped(folder: str, chapter: str, changed: float) -> dict[str, Any]:
+def _shipped(folder: str, chapter: str, changed: tuple[tuple[Path, float], ...]) -> dict[str, Any]:
     """The configuration without overrides; composing takes a while, so it is kept until the files change."""
 
     def composed() -> tuple[dict[str, Any], list[Path]]:
         files = config_files(chapter).values()
         folders = {path.parent for path in files} | {config_dir(), config_dir() / "chapter"}
+        if home := chapters.folders().get(chapter):  # where a file may appear
+            folders |= {home, *(home / name for name in chapters.names(chapter))}
         log.info("composed chapter %s from %d files of %s", chapter, len(files), next(iter(folders)))
         return _compose(chapter), [Path(__file__), *files, *folders, *config_dir().rglob("*.yaml")]
 
@@ -331,11 +334,15 @@ def check_engine(engine: Any) -> None:
         )
 
 
+def _block(composed: Mapping[str, Any], experiment: str) -> Mapping[str, Any]:
+    if not isinstance(block := composed.get(experiment), Mapping):
+        raise InputError(f"experiment '{experiment}' has no parameters: they stand in config.yaml in its folder")
+    return block
+
+
 def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, dict[str, Any]]:
     """Resolved configuration of every case of an experiment, checked: ``{case: plain dictionary}``."""
-    block = composed.get(experiment)
-    if not isinstance(block, Mapping):
-        raise InputError(f"experiment '{experiment}' has no block in its chapter's configuration")
+    block = _block(composed, experiment)
     base = {key: value for key, value in block.items() if key != "cases"}
     names = names_of(composed)
     result: dict[str, dict[str, Any]] = {}
@@ -375,7 +382,7 @@ def settings(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
 
 def resolved_block(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
     """The experiment's own block, resolved, without its cases."""
-    block = {key: value for key, value in composed[experiment].items() if key != "cases"}
+    block = {key: value for key, value in _block(composed, experiment).items() if key != "cases"}
     return resolved(names_of(composed), experiment, block)
 
 
