@@ -5,8 +5,9 @@ from __future__ import annotations
 import difflib
 import re
 import sys
-from collections.abc import Iterable
-from contextlib import suppress
+import traceback
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 COMPLETES = "the same command completes what is missing"
@@ -24,6 +25,21 @@ def one_line(thing: object) -> str:
 def sentence(error: BaseException) -> str:
     """What went wrong, in one line."""
     return one_line(error) if isinstance(error, InputError) else f"{type(error).__name__}: {one_line(error)}"
+
+
+@contextmanager
+def reading(folder: Path) -> Iterator[None]:
+    """While modules of a folder are imported: what is wrong in them is an InputError with the file and the line."""
+    try:
+        yield
+    except InputError:
+        raise
+    except (Exception, SystemExit) as error:
+        frames = [(frame.filename, frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
+        inside = [place for place in frames if place[0].startswith(str(folder))] or [(str(folder), None)]
+        file, line = (error.filename, error.lineno) if isinstance(error, SyntaxError) else inside[-1]
+        where = f"{file}:{line}" if line else file
+        raise InputError(f"{where}: {type(error).__name__}: {one_line(getattr(error, 'msg', error))}") from error
 
 
 def refused(key: str, value: object, must: str) -> InputError:

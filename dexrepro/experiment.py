@@ -17,6 +17,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from dexrepro.errors import reading
+
 if TYPE_CHECKING:
     import matplotlib.figure
     import numpy as np
@@ -173,7 +175,9 @@ class Experiment:
     @cached_property
     def summary(self) -> str:
         """First line of what ``experiment.py`` says of itself."""
-        text = ast.get_docstring(ast.parse((self.folder / "experiment.py").read_text("utf-8"))) or ""
+        path = self.folder / "experiment.py"
+        with reading(self.folder):
+            text = ast.get_docstring(ast.parse(path.read_text("utf-8"), str(path))) or ""
         return text.partition("\n")[0]
 
     @cached_property
@@ -187,7 +191,8 @@ class Experiment:
 
     @property
     def requires(self) -> tuple[str, ...]:
-        return tuple(getattr(importlib.import_module(self.package), "REQUIRES", ()))
+        with reading(self.folder):
+            return tuple(getattr(importlib.import_module(self.package), "REQUIRES", ()))
 
     @property
     def figures(self) -> Mapping[str, Figure]:
@@ -224,4 +229,5 @@ class Experiment:
     def _part(self, module: str, name: str, default: Any) -> Any:
         if not (self.folder / f"{module}.py").exists():
             return default
-        return getattr(importlib.import_module(f"{self.package}.{module}"), name, default)
+        with reading(self.folder):
+            return getattr(importlib.import_module(f"{self.package}.{module}"), name, default)

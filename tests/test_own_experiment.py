@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import time
 from pathlib import Path
 
 import pytest
@@ -85,6 +86,37 @@ def test_a_folder_may_be_named_twice_and_one_that_adds_nothing_is_refused(
         status, said = mine(f"list --experiments more --experiments {name}")
         assert status == 2
         assert f"--experiments = {name} adds nothing" in said
+
+
+def test_an_experiment_that_is_added_to_a_known_folder_is_found(mine: Command) -> None:
+    for path in (Path("more"), *Path("more").rglob("*")):
+        os.utime(path, (0, time.time() - 100))  # so that what follows from them is kept
+    assert "fade:" in mine("--experiments more list chapter=lab")[1]
+    shutil.copytree("more/lab/fade", "more/lab/glow")
+    Path("more/lab/glow/claims.py").unlink()
+    code, text = mine("--experiments more list chapter=lab")
+    assert (code, "glow:" in text) == (0, True), text
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("lab/fade/experiment.py", "def simulate(:", "lab/fade/experiment.py:1: SyntaxError: invalid syntax"),
+        ("lab/fade/claims.py", "\nCLAIMS = (1 / 0,)", "lab/fade/claims.py:2: ZeroDivisionError: division by zero"),
+        ("lab/fade/figures.py", "import nosuch", "figures.py:1: ModuleNotFoundError: No module named 'nosuch'"),
+        ("lab/__init__.py", "raise SystemExit(3)", "lab/__init__.py:1: SystemExit: 3"),
+        ("lab/fade/config.yaml", None, "experiment 'fade' has no parameters: they stand in config.yaml in its folder"),
+    ],
+)
+def test_what_is_wrong_in_a_file_of_an_experiment_is_said_with_its_line(
+    mine: Command, name: str, content: str | None, said: str
+) -> None:
+    path = Path("more", name)
+    path.unlink(missing_ok=True)
+    if content is not None:
+        path.write_text(content)
+    code, text = mine("--experiments more list chapter=lab")
+    assert (code, said in text) == (2, True), text
 
 
 def test_a_chapter_is_listed_alone_with_its_claims(mine: Command) -> None:

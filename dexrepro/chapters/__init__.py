@@ -26,6 +26,7 @@ from typing import Any
 import yaml
 
 from dexrepro.claims import Claim, Erratum, Reference
+from dexrepro.errors import InputError, reading
 from dexrepro.experiment import Experiment
 
 ADDED = "DEXREPRO_EXPERIMENTS"
@@ -97,7 +98,10 @@ def option(number: str) -> str:
 def book() -> Book:
     """The book that the chapters are about: that of the package, or of an added folder with a ``book.yaml``."""
     home = next((path for path in _added() if (path / "book.yaml").exists()), Path(__file__).parent)
-    entries = yaml.safe_load((home / "book.yaml").read_text("utf-8"))
+    with reading(path := home / "book.yaml"):
+        entries = yaml.safe_load(path.read_text("utf-8"))
+    if not isinstance(entries, dict) or "title" not in entries:
+        raise InputError(f"{path} has no title: such a file says 'title: ...' and may say 'authors: ...'")
     return Book(str(entries["title"]), str(entries.get("authors", "")))
 
 
@@ -132,7 +136,8 @@ def natural(text: str) -> list[tuple[int, str]]:
 def load(number: str) -> Chapter:
     """Import one chapter, or what is beside them."""
     folder = Path(__file__).parent / OWN if number == OWN else folders()[number]
-    package = _package(folder)
+    with reading(folder):
+        package = _package(folder)
     order = list(getattr(package, "ORDER", ()))
     found = sorted(_experiments(folder), key=lambda name: (order.index(name) if name in order else len(order), name))
     experiments = tuple(Experiment(f"{package.__name__}.{name}", folder / name) for name in found)
@@ -153,7 +158,8 @@ def load(number: str) -> Chapter:
 def _part(package: ModuleType, folder: Path, module: str, name: str) -> tuple[Any, ...]:
     if not (folder / f"{module}.py").exists():
         return ()
-    return tuple(getattr(importlib.import_module(f"{package.__name__}.{module}"), name))
+    with reading(folder):
+        return tuple(getattr(importlib.import_module(f"{package.__name__}.{module}"), name))
 
 
 def _experiments(folder: Path) -> list[str]:
