@@ -123,8 +123,9 @@ CLAIMS = (
             "once settled, one gain": ordered(*(f".{case}.steady_rmse_mm" for case in COMMON)),
         },
         note="Over the whole run the errors differ little, being set by the start ({.broad20.rmse_mm:.2f}, "
-        "{.broad30.rmse_mm:.2f}, {.broad50.rmse_mm:.2f} mm for 20, 30, 50); settled, at equal effective gain, 20 and "
-        "30 tie ({.broad20.steady_rmse_mm:.2f} and {.broad30.steady_rmse_mm:.2f} mm).",
+        "{.broad30.rmse_mm:.2f}, {.broad50.rmse_mm:.2f} mm from the smallest to the largest); settled, at equal "
+        "effective gain, the two smaller ones tie ({.broad20.steady_rmse_mm:.2f} and {.broad30.steady_rmse_mm:.2f} "
+        "mm).",
     ),
     fig_4_6(
         "C4.07a",
@@ -160,10 +161,12 @@ CLAIMS = (
         searched="where the ellipse begins, which is not printed (E4.12)",
         where="4.2.2",
         note="The control is a motion within known inputs, the last of the strokes: it adds none. With thresholds of "
-        "20, 30 and 50 the strokes leave {.broad20.nodes_trained}, {.broad30.nodes_trained} and "
-        "{.broad50.nodes_trained} nodes. After an ellipse begun at the centre, where the strokes begin, there are "
-        "{.broad20.nodes}, {.broad30.nodes} and {.broad50.nodes}, after one begun on the curve {.on_curve20.nodes}, "
-        "{.on_curve30.nodes} and {.on_curve50.nodes}: what brings new inputs is the arm's way to the curve.",
+        "{.cases.broad20.law.network.basis.threshold:g}, {.cases.broad30.law.network.basis.threshold:g} and "
+        "{.cases.broad50.law.network.basis.threshold:g} the strokes leave {.broad20.nodes_trained}, "
+        "{.broad30.nodes_trained} and {.broad50.nodes_trained} nodes. After an ellipse begun at the centre, where the "
+        "strokes begin, there are {.broad20.nodes}, {.broad30.nodes} and {.broad50.nodes}, after one begun on the "
+        "curve {.on_curve20.nodes}, {.on_curve30.nodes} and {.on_curve50.nodes}: what brings new inputs is the arm's "
+        "way to the curve.",
     ),
     Claim(
         "C4.10b",

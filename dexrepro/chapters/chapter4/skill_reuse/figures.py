@@ -52,9 +52,21 @@ FIGURES = {
         "first half second of each run. The book shows counts that grow faster for smaller thresholds.",
         "Number of nodes over time for three thresholds, with the first half second of each run.",
     ),
-    "4.8": Figure(WEIGHTS, "Weights of the nodes over time while four strokes are learned, threshold 20."),
-    "4.9": Figure(WEIGHTS, "Weights of the nodes over time while four strokes are learned, threshold 30."),
-    "4.10": Figure(WEIGHTS, "Weights of the nodes over time while four strokes are learned, threshold 50."),
+    "4.8": Figure(
+        WEIGHTS,
+        "Weights of the nodes over time while four strokes are learned, threshold "
+        "{.cases.broad20.law.network.basis.threshold:g}.",
+    ),
+    "4.9": Figure(
+        WEIGHTS,
+        "Weights of the nodes over time while four strokes are learned, threshold "
+        "{.cases.broad30.law.network.basis.threshold:g}.",
+    ),
+    "4.10": Figure(
+        WEIGHTS,
+        "Weights of the nodes over time while four strokes are learned, threshold "
+        "{.cases.broad50.law.network.basis.threshold:g}.",
+    ),
 }
 UNITS = {
     "error": "m", "tip": "m", "position": "rad", "torque": "N m", "virtual_acceleration": "rad/s²", "usage": "1",
