@@ -46,7 +46,7 @@ def tabulate(recordings: Recordings, metrics: AllMetrics, config: Config) -> dic
     for case, numbers in metrics.items():
         distances = {f"arm to {name} box [cm]": 100 * float(numbers[f"distance_{name}"] or 0) for name in BOXES}
         rest = {
-            "tip path to new box [cm]": 100 * float(numbers["path_to_new"] or 0),
+            "tip path to new box [cm]": None if numbers["path_to_new"] is None else 100 * numbers["path_to_new"],
             "largest distance to reference [cm]": numbers["e_max"],
             "projected steps": numbers["projections"],
             "contact peak [N]": numbers.get("contact_peak"),
