@@ -44,6 +44,8 @@ def _arm(side: str) -> Arm:
 def simulate(config: Config, rng: Rng) -> Recording:
     movement = bimanual.move(config, rng("measurement"))
     wrists = (movement.original if config.original else movement.joints)[:, 0, :, bimanual.WRIST]
+    if not np.isfinite(wrists).all():
+        return Recording(status=f"undefined from {movement.undefined_from:.2f} s")
     time, tips, turns, ends = _palm_path(config, movement.time, wrists)
     across = ends[0, 0] - ends[0, 1]
     place = (*ends[0].mean(axis=0)[:2], float(np.arctan2(-across[0], across[1])))
@@ -114,6 +116,9 @@ def _pictures(world: World, run: Recording, config: Config) -> dict[str, Image]:
 
 
 def measure(recording: Recording, config: Config) -> Metrics:
+    """Distances [cm] and forces [N] while the box is carried; undefined where there is no path to carry it along."""
+    if "time" not in recording:
+        return {"box_error_max": None, "min_palm_force": None, "carried": 0}
     gap = np.linalg.norm(recording["box.pose"][:, :3] - recording["middle"], axis=1)
     replay = recording.between(config.ramp)
     force = np.minimum(recording["palm_left"], recording["palm_right"])
