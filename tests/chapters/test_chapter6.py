@@ -5,13 +5,16 @@ import numpy as np
 import pytest
 from cases import rng
 
+from dexrepro import chapters
 from dexrepro.case import generator
 from dexrepro.chapters.chapter6 import bimanual, learning, plane
 from dexrepro.chapters.chapter6.arm_obstacles import experiment as arm_obstacles
+from dexrepro.chapters.chapter6.box_carrying import experiment as box_carrying
 from dexrepro.chapters.chapter6.constraint_cases import experiment as constraint_cases
 from dexrepro.chapters.chapter6.keep_out import experiment as keep_out
 from dexrepro.chapters.chapter6.obstacle_terms import experiment as obstacle_terms
 from dexrepro.chapters.chapter6.planar_constraint import experiment as planar_constraint
+from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.experiment import Config
 from dexrepro.humans.segmentation import pauses
 from dexrepro.primitives.barrier import Constraint
@@ -171,6 +174,25 @@ def test_a_run_whose_law_became_undefined_has_no_number_that_flatters():
     lost = along("tau1_feedforward")
     assert lost["violated_from"] > 2
     assert {lost[name] for name in ("settle_after_arc", "peak_in_arc", "goal_error", "clearance", "v_rises")} == {None}
+
+
+def test_nothing_is_carried_where_the_law_leaves_no_path():
+    config = case("box_carrying", "unprojected")
+    recording = box_carrying.simulate(config, rng("box_carrying"))
+    assert recording.status.startswith("undefined from")
+    assert box_carrying.measure(recording, config) == {"box_error_max": None, "min_palm_force": None, "carried": 0}
+
+
+def test_the_book_is_judged_without_our_projection_as_the_rule_of_fairness_says():
+    composed, projected = compose_chapter("6"), set()
+    for claim in chapters.load("6").claims:
+        if claim.source == "book" and claim.predicate and not claim.by_construction:
+            cases = experiment_cases(composed, claim.experiment)
+            for name in {metric.split(".")[1] for metric in claim.metrics} & set(cases):
+                values = cases[name]
+                if values.get("cdmp", {}).get("projection") and values.get("primitive", True):
+                    projected.add(f"{claim.id}: {name}")
+    assert not projected
 
 
 def test_where_the_consistent_law_keeps_its_tube():
