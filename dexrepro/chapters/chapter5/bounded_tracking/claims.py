@@ -22,14 +22,14 @@ CLAIMS = (
         "5.5b",
         "The adaptive controller keeps tracking errors within the performance limits while drawing.",
         every(*(within_limits(f"letter_{letter}") for letter in LETTERS)),
-        control=within_limits("pd_tuned"),
+        control=every(*(within_limits(f"pd_letter_{letter}") for letter in LETTERS)),
         printed=within_limits("printed"),
         credits="the adaptive neural law and its barrier",
         where="5.5.2, 5.5.4",
-        note="The control is PD control with gravity compensation, tuned with as many settings. Both use "
-        "{.pd_tuned.bound_use:.0%} of the limits, which is the initial error that we chose; without "
-        "network and barrier the same law uses {.no_network_no_barrier.bound_use:.0%}, and with one "
-        "constant node in place of the network, an integrator, {.integrator.bound_use:.0%} (T5.G).",
+        note="The control is PD control with gravity compensation, tuned with as many settings, on the same letters. "
+        "Both use {.pd_letter_w.bound_use:.0%} of the limits, which is the initial error that we chose; without "
+        "network and barrier the same law uses {.no_network_no_barrier.bound_use:.0%}, and with one constant node in "
+        "place of the network, an integrator, {.integrator.bound_use:.0%} (T5.G).",
     ),
     Claim(
         "C5.19",
