@@ -9,6 +9,7 @@ import pytest
 
 from dexrepro import chapters
 from dexrepro.chapters.chapter4 import measures, payload_arm, two_link
+from dexrepro.config import compose_chapter, experiment_cases
 from dexrepro.robots import kinematics
 from dexrepro.robots.baxter import baxter
 from dexrepro.robots.inverse_kinematics import nearest
@@ -21,6 +22,29 @@ def simulated(experiment, name, **changes):
     module = chapters.load("4").experiment(experiment).simulation
     recording = module.simulate(config, lambda purpose: np.random.default_rng(0))
     return recording, module.measure(recording, config)
+
+
+def networks():
+    """Name and network of each case that has one, of the experiments that compare networks; and the shared values."""
+    composed = compose_chapter("4")
+    for experiment in ("skill_reuse", "barrier_and_switch", "payload_transfer"):
+        for name, values in experiment_cases(composed, experiment).items():
+            if network := values.get("network") or values["law"].get("network"):
+                yield name, network, composed["shared"]["network"]
+
+
+def test_networks_forget_at_one_rate_as_the_rule_of_fairness_says():
+    apart = {name for name, network, shared in networks() if network["leakage"] != shared["leakage"]}
+    assert apart == {"common_gamma", "fuzzy_common_gamma"}
+
+
+def test_one_network_has_one_gain_beside_the_one_for_all():
+    found = {}
+    for name, network, shared in networks():
+        if name != "rbf10_high_gain" and network.get("gain", shared["gain"]) != shared["gain"]:
+            found.setdefault(str(sorted(network["basis"].items())), set()).add(float(network["gain"]))
+    assert found
+    assert not {basis: gains for basis, gains in found.items() if len(gains) > 1}
 
 
 def test_gravity_torque_of_the_arm_in_the_world_is_the_known_one():

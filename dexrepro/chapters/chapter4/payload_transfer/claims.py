@@ -53,7 +53,7 @@ CLAIMS = (
         _oscillates("rbf_wide", "reuse"),
         control=_oscillates("constant", "reuse"),
         readings={"width 1.5": _oscillates("rbf_medium", "reuse")},
-        searched="width of the fixed network (0.3, 1.5, 3, 5), whose error decreases with it",
+        searched="width of the fixed network: its error falls from 0.3 to 5, is equal with 8, rises with 12 and 20",
         note="Visibly: by half as much again, and more than without any network; oscillation is the rms rate of the "
         "error. Broad {.reuse.oscillation_mm_s:.0f} mm/s, fixed with the width of least error "
         "{.rbf_wide.oscillation_mm_s:.0f}, with 1.5 {.rbf_medium.oscillation_mm_s:.0f}, without a network "
