@@ -68,6 +68,13 @@ def test_the_exit_status_is_the_one_that_help_says(command: Command, text: str, 
     assert re.search(rf"^  {status} +\w", PARSER.format_help(), re.MULTILINE)
 
 
+def test_a_narrow_terminal_cuts_no_folder_short(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("dexrepro.commands.out.width", 30)
+    folder = f"results/{'deep/' * 40}here"
+    code, text = command(f"run only=decay case=plain workers=1 results={folder}")
+    assert (code, f"{folder}/runs/decay-" in text, "reproduced" in text, "…" in text) == (0, True, True, False), text
+
+
 def test_help_fits_a_narrow_terminal_and_the_alphabet_of_any_console(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "40")
     for parser in (PARSER, *COMMANDS.values()):

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from rich.console import Console
+from rich.table import Table
 
 from dexrepro.keys import TAKEN
 
@@ -31,6 +32,12 @@ def say(text: object) -> None:
 def warn(text: object) -> None:
     """The same of what went wrong, where errors are said."""
     err.print(str(text), markup=False)
+
+
+def show_table(table: Table) -> None:
+    """A table at the width it needs: a narrow terminal wraps its lines, and no name or folder is cut short."""
+    needed = out.measure(table, options=out.options.update(width=10_000)).maximum
+    Console(highlight=False, width=max(out.width, needed)).print(table, crop=False, soft_wrap=True)
 
 
 class Command(NamedTuple):

@@ -10,7 +10,7 @@ from typing import Any
 
 from rich.table import Table
 
-from dexrepro.commands import OK, SHOWN, command, option, out, say
+from dexrepro.commands import OK, SHOWN, command, option, say, show_table
 from dexrepro.errors import InputError, folder_named, whole_number
 
 GIVEN = "\n  EXPERIMENT.key=value    what shall be another value throughout, as for dexrepro run"
@@ -77,7 +77,7 @@ def compare_command(options: argparse.Namespace) -> int:
     shown = Table(*rows[0], title=", ".join([f"{known['budget']} runs each", *given]), box=None, pad_edge=False)
     for row in rows:
         shown.add_row(*(f"{value:.4g}" if isinstance(value, float) else str(value or "") for value in row.values()))
-    out.print(shown)
+    show_table(shown)
     changed = [digest_of(given)[:10]] if given else []
     path = results / "tuning" / f"{'-'.join(['leaderboard', *experiments, *changed])}.csv"
     pd.DataFrame(rows).to_csv(path, index=False)

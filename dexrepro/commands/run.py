@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
-from dexrepro.commands import FAILED, OK, SHOWN, command, option, out, say, warn
+from dexrepro.commands import FAILED, OK, SHOWN, command, option, out, say, show_table, warn
 from dexrepro.errors import InputError, importable
 from dexrepro.keys import SELECTION
 
@@ -186,7 +186,7 @@ def _print_summary(results: Mapping[str, Result], differs: Mapping[str, list[str
         factor = f"{result.run['real_time_factor']:.1f}" if result.run["real_time_factor"] else ""
         counts = [str(verdicts[name][key] or "") for key in shown]
         table.add_row(name, f"{result.run['wall']:.1f}", factor, *counts, str(result.folder))
-    out.print(table)
+    show_table(table)
     for name, reason in skipped.items():
         say(f"{name} skipped: {reason}")
     for name, keys in differs.items():
