@@ -7,10 +7,11 @@ from typing import Any
 
 import pytest
 
-from dexrepro import chapters, study
+from dexrepro import chapters
 from dexrepro.checks import is_number, leaves, value_at
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block
 from dexrepro.provenance import commented_leaves, parse_provenance
+from dexrepro.study.draws import parameters
 
 ALIASES = {"control_period": ("dt",), "step": ("dt",), "speed_limit": ("speed",)}
 """Names under which a law takes what the experiment calls otherwise."""
@@ -58,7 +59,7 @@ def test_a_number_that_a_study_draws_reaches_the_laws_of_all_cases(number: str) 
     """A rival with a copy of it in its own law would stay where it is."""
     shipped, apart = compose_chapter(number), []
     for experiment in chapters.load(number).experiments:
-        drawn = {key: value_at(shipped, key) for key in study.parameters(number, experiment.name)}
+        drawn = {key: value_at(shipped, key) for key in parameters(number, experiment.name)}
         drawn = {key: value for key, value in drawn.items() if is_number(value) and not key[-1].isdigit()}
         changed = compose_chapter(number, [f"{key}={value + 1}" for key, value in drawn.items()])
         now = experiment_cases(changed, experiment.name)

@@ -84,6 +84,7 @@ CLAIMS = (
         note="As near the centre as the arm is here, the torque is so small that it disturbs nothing without the "
         "projector either; where the tool axis is left free, it does (tracking error up to "
         "{.unprojectedpos1.tracking_error_max:.2g} m against {.exactpos1.tracking_error_max:.2g} m).",
+        turns="without the projector reach 4 runs along a joint limit, and how far it ends follows the smallest change",
     ),
     fig_3_7_to_10(
         "C3.04b",

@@ -22,7 +22,7 @@ CLAIMS = (
         printed=follows("printed"),
         credits="the adaptive neural law and its barrier",
         where="5.5.3",
-        note="The control is PD control with gravity compensation as tuned for the letters, along the same 18 "
+        note="The control is PD control with gravity compensation as tuned for the letters, along the same "
         "crossings. To the farthest goal it uses {.pd_three_8.bound_use:.0%} of the bound, the law "
         "{.three_8.bound_use:.0%}, which is the initial error; the pen errs by {.pd_three_8.tip_rms:.2f} against "
         "{.three_8.tip_rms:.2f} mm.",
