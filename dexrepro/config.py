@@ -336,7 +336,10 @@ def check_engine(engine: Any) -> None:
 
 def _block(composed: Mapping[str, Any], experiment: str) -> Mapping[str, Any]:
     if not isinstance(block := composed.get(experiment), Mapping):
-        raise InputError(f"experiment '{experiment}' has no parameters: they stand in config.yaml in its folder")
+        raise InputError(
+            f"experiment '{experiment}' has no block in its chapter's configuration (of one of your own: config.yaml "
+            "in its folder)"
+        )
     return block
 
 

@@ -105,7 +105,7 @@ def test_an_experiment_that_is_added_to_a_known_folder_is_found(mine: Command) -
         ("lab/fade/claims.py", "\nCLAIMS = (1 / 0,)", "lab/fade/claims.py:2: ZeroDivisionError: division by zero"),
         ("lab/fade/figures.py", "import nosuch", "figures.py:1: ModuleNotFoundError: No module named 'nosuch'"),
         ("lab/__init__.py", "raise SystemExit(3)", "lab/__init__.py:1: SystemExit: 3"),
-        ("lab/fade/config.yaml", None, "experiment 'fade' has no parameters: they stand in config.yaml in its folder"),
+        ("lab/fade/config.yaml", None, "experiment 'fade' has no block in its chapter's configuration"),
     ],
 )
 def test_what_is_wrong_in_a_file_of_an_experiment_is_said_with_its_line(
