@@ -6,7 +6,7 @@ import base64
 import contextlib
 import html
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -71,23 +71,23 @@ def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config
 
 
 @contextlib.contextmanager
-def _lenient(differs: Sequence[str]) -> Iterator[None]:
-    """Let pass what fails for want of the other cases, in a result of some alone."""
+def _lenient(incomplete: bool) -> Iterator[None]:
+    """Let pass what fails for want of other cases, in a result that has not all of them."""
     try:
         yield
     except Exception:
-        if not _of_some_cases(differs):
+        if not incomplete:
             raise
 
 
-def _of_some_cases(differs: Sequence[str]) -> bool:
-    return any(text.startswith(PARTIAL) for text in differs)
+def _ended_at_once(recording: Recording) -> bool:
+    """Whether a stop condition ended the run before there was anything to record."""
+    return recording.status != "finished" and not (recording.series or recording.frames or recording.images)
 
 
-def recorded(
-    experiment: Experiment, folder: Path
-) -> tuple[dict[str, Recording], dict[str, Metrics], Config, list[str]]:
-    """What a result's files hold: recordings and metrics by case, those over several cases, values, what differs."""
+def recorded(experiment: Experiment, folder: Path) -> tuple[dict[str, Recording], dict[str, Metrics], Config, bool]:
+    """What a result's files hold: what can be drawn by case, metrics by case and over several, values, and whether
+    cases are missing: not asked for or, with other parameters than the book's, ended before there was a sample."""
     from dexrepro.recordings import load_recording
 
     run = read_json(folder / "run.json")
@@ -97,19 +97,23 @@ def recorded(
         _, first, *rest = name.split(".", 2)
         if rest and first in nested:
             nested[first][rest[0]] = value
-    if not _of_some_cases(run["differs"]):  # a number over the cases is one over all of them
-        summarise(experiment, nested, config)
     recordings = {
         case: load_recording(folder / "series", case, entry["status"]) for case, entry in run["cases"].items()
     }
-    return recordings, nested, config, run["differs"]
+    shown = {case: recording for case, recording in recordings.items() if not _ended_at_once(recording)}
+    some_cases = any(text.startswith(PARTIAL) for text in run["differs"])
+    incomplete = some_cases or (bool(run["differs"]) and len(shown) < len(recordings))
+    if not some_cases:  # a number over the cases is one over all of them
+        with _lenient(incomplete):
+            summarise(experiment, nested, config)
+    return shown, nested, config, incomplete
 
 
 def present(chapter: str, experiment: Experiment, folder: Path) -> None:
     """Numbers over several cases, claims, tables and figures of a result folder, from its files alone."""
     from dexrepro.report import style
 
-    recordings, nested, config, differs = recorded(experiment, folder)
+    recordings, nested, config, incomplete = recorded(experiment, folder)
     flat_metrics = flat(experiment.name, nested)
     write_json(folder / "metrics.json", flat_metrics)
     settings = dict(leaves({experiment.name: config}))
@@ -120,12 +124,12 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
         shutil.rmtree(folder / name, ignore_errors=True)
         (folder / name).mkdir()
     if tabulate := experiment.function("tabulate"):
-        with _lenient(differs):
+        with _lenient(incomplete):
             for identifier, table in tabulate(recordings, nested, config).items():
                 if len(table.columns):  # of some cases there may be nothing to tell
                     table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
     if draw := experiment.function("draw"):
-        with style.style(), _lenient(differs):
+        with style.style(), _lenient(incomplete):
             for identifier, figure in draw(recordings, nested, config).items():
                 style.save(figure, folder / "figures", identifier)
 

@@ -16,6 +16,7 @@ from dexrepro.errors import InputError
 from dexrepro.plan import own_digest, plan_chapter
 from dexrepro.result import Result
 from dexrepro.runner import KEPT, complete, run_plans
+from dexrepro.storage import read_json
 
 
 def run(*overrides: str, workers: int = 1, force: bool = False):
@@ -150,6 +151,17 @@ def test_a_failing_case_stops_no_other_and_loses_nothing(toy: Path) -> None:
     assert (toy / "results/chapter90/decay/metrics.json").read_bytes() == before
     cached = {path.parent.name.split("-")[0] for path in (toy / "results/.cache/decay").glob("*/case.json")}
     assert {"plain", "halved", "gain1", "gain2"} <= cached
+
+
+def test_a_case_that_ends_before_its_first_sample_is_measured_and_the_others_are_drawn(toy: Path) -> None:
+    outcome = run("+decay.cases.fast.fail='at once'")
+    folder = outcome.folders["decay"]
+    assert not outcome.failures
+    assert read_json(folder / "metrics.json")["decay.fast.final"] is None
+    assert read_json(folder / "run.json")["cases"]["fast"]["status"] == "undefined from 0 s"
+    assert (folder / "figures/fig_90_10.png").exists()
+    assert "fast" not in (folder / "tables/T90.1.csv").read_text()
+    assert cli.main(["draw", str(folder)]) == 0
 
 
 def test_a_killed_worker_is_named_and_the_next_run_completes_what_is_missing(toy: Path) -> None:

@@ -70,7 +70,7 @@ def recorded_scene(
     run = read_json(folder / "run.json")
     cases = run["cases"]
     chosen = case or (experiment.film.case if experiment.film and experiment.film.case in cases else None)
-    recording, chosen = _recording(folder, experiment, [chosen] if chosen else list(cases))
+    recording, chosen = _recording(folder, experiment, {chosen: cases[chosen]} if chosen else cases)
     raw = read_yaml(folder / "config.yaml").get("cases", {}).get(chosen)
     if not isinstance(raw, dict):
         raise InputError(f"{folder / 'config.yaml'} has no configuration of the case '{chosen}'")
@@ -99,13 +99,14 @@ def up_to_date(film: Path, experiment: Experiment) -> bool:
     return film.exists() and film.stat().st_mtime >= max(path.stat().st_mtime for path in sources)
 
 
-def _recording(folder: Path, experiment: Experiment, cases: list[str]) -> tuple[Recording, str]:
+def _recording(folder: Path, experiment: Experiment, cases: dict[str, Any]) -> tuple[Recording, str]:
     staged = experiment.function("stage") is not None
     for name in cases:
         recording = load_recording(folder / "series", name)
         if recording.series and (staged or any(channel.endswith(".position") for channel in recording.series)):
             return recording, name
-    raise InputError(f"no case in {folder} has recorded an arm")
+    said = ", ".join(f"'{name}' ({entry['status']})" for name, entry in cases.items())
+    raise InputError(f"no arm is recorded in {folder} by {said}")
 
 
 def _frames(experiment: Experiment, config: Config, recording: Recording) -> Iterator[Image.Image]:

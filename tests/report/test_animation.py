@@ -23,7 +23,7 @@ from dexrepro.physics.world import World
 from dexrepro.recordings import save_recording
 from dexrepro.report import animation, explorer
 from dexrepro.robots.planar import planar
-from dexrepro.storage import write_json
+from dexrepro.storage import read_json, write_json
 
 CAMERA = Camera((0.4, 0.0, 0.0), 1.5, 0.0, -89.9)
 
@@ -108,6 +108,19 @@ def test_a_run_that_ended_before_the_span_of_the_film_is_shown_as_a_whole(swing:
     save_recording(Recording(series), swing[0] / "series", "turn", 20.0)
     with Image.open(animation.render(swing[0])) as film:
         assert film.n_frames == 7
+
+
+def test_a_case_that_ended_before_its_first_sample_spoils_no_film_of_the_others(swing: tuple[Path, Experiment]) -> None:
+    folder, run = swing[0], read_json(swing[0] / "run.json")
+    at_once = {"status": "undefined from 0.50 s", "steps": 0, "simulated": 0.0, "wall": 0.1}
+    run["cases"] = {"undefined": at_once} | run["cases"]
+    write_json(folder / "run.json", run)
+    assert animation.render(folder).name == "turn.gif"
+    with pytest.raises(InputError, match=r"no arm is recorded in .* by 'undefined' \(undefined from 0.50 s\)"):
+        animation.render(folder, "undefined")
+    write_json(folder / "run.json", run | {"cases": run["cases"] | {"undefined": at_once | {"status": "finished"}}})
+    with pytest.raises(InputError, match="no series of the case 'undefined'"):
+        animation.render(folder)
 
 
 def test_a_result_that_names_foreign_code_is_not_rendered(swing: tuple[Path, Experiment], tmp_path: Path) -> None:

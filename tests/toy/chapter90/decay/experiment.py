@@ -76,6 +76,8 @@ FAULTS = {
 def simulate(config, rng):
     if config.pause:
         time.sleep(config.pause)
+    if config.fail == "at once":
+        return Recording(status="undefined from 0 s")
     if config.fail in FAULTS:
         FAULTS[config.fail]()
     elif config.fail:
@@ -88,6 +90,8 @@ def simulate(config, rng):
 
 
 def measure(recording, config):
+    if not recording.series:
+        return {"final": np.nan}
     return {
         "final": recording["x"][-1],
         "largest": recording["x"].max(),
