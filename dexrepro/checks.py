@@ -30,6 +30,7 @@ _NOT_NEGATIVE = re.compile(r"(^|_)(stiffness|damping|friction|noise|noise_std|de
 
 _COUNT = re.compile(r"(^|_)(samples|steps|substeps|count|repetitions|trials|iterations|generations|places|nodes)$")
 _STEP = re.compile(r"(^|_)(step|dt|control_period)$")
+LARGEST = 1e50  # of what powers and products are taken
 MOST = 10_000_000  # steps of one simulation; what is recorded of them takes some gigabytes
 
 
@@ -58,6 +59,8 @@ def check_values(config: Mapping[str, Any], where: str) -> None:
             continue
         if not abs(value) < math.inf or abs(value) > sys.float_info.max:
             raise refused(f"{where}.{key}", str(value)[:20], "be a finite number")
+        if value and not 1 / LARGEST <= abs(value) <= LARGEST:
+            raise refused(f"{where}.{key}", value, f"be 0, or {1 / LARGEST:g} to {LARGEST:g} in size")
         if _POSITIVE.search(name) and value <= 0:
             raise refused(f"{where}.{key}", value, "be greater than 0")
         if _NOT_NEGATIVE.search(name) and value < 0:

@@ -28,6 +28,8 @@ HUGE = "9" * 400
         (f"decay.start={HUGE}", "decay.start = 9999"),
         (f"decay.start=-{HUGE}", "decay.start = -9999"),
         ("decay.start=inf", "decay.start = inf is not allowed: it must be a finite number"),
+        ("decay.start=1e300", "decay.start = 1e+300 is not allowed: it must be 0, or 1e-50 to 1e+50 in size"),
+        ("decay.start=-1e-300", "decay.start = -1e-300 is not allowed: it must be 0, or 1e-50 to 1e+50 in size"),
         ("+decay.cases.summary={}", "'summary' is not allowed as a name"),
         ("+decay.cases={a.b:{}}", "is not allowed"),
         (f"+decay.cases.{'q' * 61}={{}}", "is not allowed as a name: use up to 60 letters"),
