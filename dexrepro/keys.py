@@ -26,8 +26,9 @@ KEYS = {
     "compare.case": ("EXPERIMENT.CASE", "the cases, with commas between them, whose law is replaced"),
     "draw.format": ("KIND", "pdf, png or svg, in results/figures/STYLE (of a changed run: STYLE/RUN)"),
     "laws": ("FOLDER|FILE", "laws of yours, which are to stand beside the book's"),
-    "minimise": ("METRIC", "the metric of the case that is to be least"),
+    "minimise": ("METRIC", "the metric of the case that is to be least; of A+B the sum"),
     "maximise": ("METRIC", "or the one that is to be greatest"),
+    "limit": ("METRIC:NUMBER", "what another metric may be at most; several with commas between them"),
     "budget": ("NUMBER", "runs (32)"),
     "jobs": ("NUMBER", "jobs that share the draws, by hydra/launcher=joblib, ray or submitit_slurm"),
 }  # fmt: skip

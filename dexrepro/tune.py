@@ -16,7 +16,7 @@ import re
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -28,7 +28,7 @@ from dexrepro import chapters
 from dexrepro.arrays import Array
 from dexrepro.case import measured, targets
 from dexrepro.checks import is_number, leaves, set_value, value_at
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.config import baseline_dir, compose_chapter, experiment_cases
 from dexrepro.control.contract import KINDS, is_plain
 from dexrepro.errors import InputError, importable, nearest, refused
 from dexrepro.experiment import Metrics
@@ -51,6 +51,7 @@ Range = tuple[float, float]
 class Search:
     """What is tuned: a case of resolved ``values``, ranges by dotted key, a metric; ``sign`` is -1 to maximise it.
 
+    metric: one, or several with + between them, whose sum counts. limits: what other metrics may be at most.
     listed: the case is made from a list (``each``), so that only all of its experiment can be overridden. guessed:
     nobody has given the ranges, so that the search follows what is best beyond them.
     """
@@ -63,6 +64,7 @@ class Search:
     metric: str
     sign: int
     seed: int
+    limits: dict[str, float] = field(default_factory=dict)
     listed: bool = False
     guessed: bool = False
 
@@ -113,7 +115,12 @@ class Found:
 
 
 def search_of(
-    case: str, metric: str, sign: int, parameters: Sequence[str] = (), overrides: Sequence[str] = ()
+    case: str,
+    metric: str,
+    sign: int,
+    parameters: Sequence[str] = (),
+    overrides: Sequence[str] = (),
+    limits: Mapping[str, float] | None = None,
 ) -> Search:
     """The search that words ask for: ``parameters`` such as ``law.gain=0.01..0.1``, or ``law.gain`` for its own range.
 
@@ -132,7 +139,30 @@ def search_of(
     ranges = dict(_asked(word, values, declared) for word in parameters)
     ranges, guessed = (ranges, False) if ranges else _of_laws(values, declared, composed[experiment])
     listed = name not in (composed[experiment].get("cases") or {"default": {}})
-    return Search(numbers[0], experiment, name, values, ranges, metric, sign, composed["seed"], listed, guessed)
+    seed, bounds = composed["seed"], dict(limits or {})
+    return Search(numbers[0], experiment, name, values, ranges, metric, sign, seed, bounds, listed, guessed)
+
+
+def shipped(case: str) -> Path:
+    """Where the search for a case's values is kept that is shipped with the book, made or not."""
+    return baseline_dir() / "tuning" / f"{case}.json"
+
+
+def searched() -> list[str]:
+    """Cases of the book whose values are the best of a search that is shipped."""
+    return sorted(path.stem for path in shipped("").parent.glob("*.json"))
+
+
+def words_of(case: str) -> list[str]:
+    """The words by which the search that is shipped was asked for; none where there is none."""
+    if case not in searched():
+        return []
+    stored = read_json(shipped(case))
+    goal = "minimise" if stored["sign"] == 1 else "maximise"
+    limits = ",".join(f"{name}:{most:g}" for name, most in stored.get("limits", {}).items())
+    words = [f"{key}={low:g}..{high:g}" for key, (low, high) in stored["ranges"].items()]
+    asked = [f"{goal}={stored['metric']}", f"budget={len(stored['runs'])}", *([f"limit={limits}"] if limits else [])]
+    return [*asked, *words]
 
 
 def numbers_of(search: Search) -> list[str]:
@@ -223,15 +253,17 @@ def run(
     results: Path,
     workers: int | None = None,
     tell: Callable[[str], None] = lambda text: None,
+    update: bool = False,
 ) -> tuple[Found, Path]:
     """Search with ``budget`` runs, store all of them under ``results/tuning``; what was found, and the file.
 
-    tell: is told how far it is, after every round.
+    tell: is told how far it is, after every round. update: store them with the book's evidence instead.
     """
     definition = chapters.load(search.chapter).experiment(search.experiment)
     about = {"case": search.name, "metric": search.metric, "sign": search.sign, "ranges": search.ranges,
-             "seed": search.seed}  # fmt: skip
+             "seed": search.seed, **({"limits": search.limits} if search.limits else {})}  # fmt: skip
     path = results / "tuning" / f"{search.name}-{digest_of([about, search.values])[:10]}.json"
+    path = shipped(search.name) if update else path
     writable(results)
     path.parent.mkdir(parents=True, exist_ok=True)
     kept = _kept(path)
@@ -289,11 +321,18 @@ def _rounds(search: Search, budget: int, rows: Sequence[Mapping[str, Any]]) -> I
 
 def _row(search: Search, content: str, chosen: Mapping[str, float], result: Any) -> dict[str, Any]:
     """One run as it is stored. Raises InputError for a metric that the case does not have."""
+    row = {"content": content, "parameters": chosen, "value": None}
     if isinstance(result, Failure):
-        return {"content": content, "parameters": chosen, "value": None, "error": result.sentence}
-    if search.metric not in result:
-        raise InputError(f"unknown metric '{search.metric}' of {search.name}: {nearest(search.metric, result)}")
-    return {"content": content, "parameters": chosen, "value": result[search.metric]}
+        return row | {"error": result.sentence}
+    terms = search.metric.split("+")
+    for name in (*terms, *search.limits):
+        if name not in result:
+            raise InputError(f"unknown metric '{name}' of {search.name}: {nearest(name, result)}")
+    for name, most in search.limits.items():
+        if not (result[name] is not None and result[name] <= most):
+            return row | {"error": f"{name} = {result[name]} is more than {most:g}"}
+    values = [result[name] for name in terms]
+    return row | {"value": None if None in values else math.fsum(values)}
 
 
 def _found(search: Search, rows: Sequence[Mapping[str, Any]]) -> Found:

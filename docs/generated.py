@@ -11,8 +11,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from dexrepro import chapters, cli, crosscheck
+from dexrepro import chapters, cli, crosscheck, tune
 from dexrepro.provenance import commented_leaves, parse_provenance
+from dexrepro.storage import read_json
 
 ROOT = Path(__file__).parents[1]
 LIBRARY = {
@@ -33,7 +34,7 @@ CODE = re.compile(r"(``.*?``|:\w+:`.*?`|::$)", re.DOTALL)
 
 def write(docs: Path) -> None:
     """Write all pages into docs/reference; one that is as it was stays untouched."""
-    for name, content in (*_api(), *_commands(), *_configuration(), *_formats(docs), *_engines()):
+    for name, content in (*_api(), *_commands(), *_configuration(), *_formats(docs), *_engines(), *_searches()):
         page = docs / "reference" / f"{name}.md"
         page.parent.mkdir(exist_ok=True)
         if not page.exists() or page.read_text("utf-8") != content:
@@ -171,6 +172,24 @@ def _engines() -> Pages:
             values = (f"{value:.4g}" if value is not None else "undefined" for value in (entry.reference, entry.other))
             text += f"| `{entry.name.removeprefix(item.experiment + '.')}` | {' | '.join(values)} | {spread} |\n"
     yield "engines", text
+
+
+def _searches() -> Pages:
+    text = (
+        "# Searches for the best values\n\nCases whose gains are said to be the best of a search, and that search: "
+        "each is shipped with all its runs in `results/baselines/tuning` and made again, in minutes, by `dexrepro tune "
+        "--update`. Rivals of one comparison have the same number of runs. Chapters 1, 2, 3 and 6 search in experiments "
+        "of their own, whose tables stand in the report.\n\n"
+        "| case | what is best | runs | over | found |\n| --- | --- | --- | --- | --- |\n"
+    )
+    for case in tune.searched():
+        stored = read_json(tune.shipped(case))
+        goal, limits = ("least" if stored["sign"] == 1 else "greatest"), stored.get("limits", {})
+        bounds = "".join(f", {name} at most {most:g}" for name, most in limits.items())
+        spans = ", ".join(f"{key} {low:g} … {high:g}" for key, (low, high) in stored["ranges"].items())
+        row = (f"`{case}`", f"{goal} {stored['metric']}{bounds}", len(stored["runs"]), spans, f"{stored['best']:.3g}")
+        text += f"| {' | '.join(map(str, row))} |\n"
+    yield "searches", text
 
 
 def _properties(schema: dict[str, Any], outer: str = "") -> Iterator[str]:

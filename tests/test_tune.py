@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from dexrepro import tune
+from dexrepro import chapters, tune
+from dexrepro.checks import value_at
 from dexrepro.errors import InputError
+from dexrepro.plan import content_of
+from dexrepro.provenance import provenance
 
 RESULTS = Path("results")
 Command = Callable[[str], tuple[int, str]]
@@ -21,6 +25,13 @@ class Bowl(tune.Search):
 
     def metrics(self, chosen):
         return {"final": (chosen.get("start", 1.0) - 1.3) ** 2}
+
+
+class Told(Bowl):
+    """The same, and where."""
+
+    def metrics(self, chosen):
+        return super().metrics(chosen) | {"start": chosen.get("start", 1.0)}
 
 
 def bowl(budget, **changed):
@@ -54,6 +65,16 @@ def test_a_guessed_range_is_left_where_the_best_lies_beyond_it(toy):
     assert 1.2 < found.chosen["start"] < 1.4
     assert "lies beyond or at the upper end of the guess 0.25..1.1: widen it" in found.edges[0]
     assert json.loads(path.read_text())["edges"] == found.edges
+
+
+def test_a_run_whose_other_metric_is_above_its_limit_is_not_the_best(toy):
+    found = tune.search_of("decay.plain", "final+start", 1, ["start"], limits={"start": 1.1})
+    found, path = tune.run(Told(**vars(found)), 24, RESULTS, workers=1)
+    assert found.failed
+    assert found.chosen["start"] < 1.1
+    assert "is more than 1.1" in path.read_text()
+    row = json.loads(path.read_text())["runs"][0]
+    assert row["value"] == pytest.approx((1.0 - 1.3) ** 2 + 1.0)
 
 
 def test_a_search_that_was_made_repeats_no_run(toy, monkeypatch):
@@ -206,3 +227,39 @@ def test_a_law_of_which_nothing_says_how_it_is_built_is_one_sentence(tmp_path, m
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(InputError, match=r"nothing says what 'gizmo' is; .* ranges = "):
         tune.leaderboard(["holding_comparison.s4"], tune.laws_in(tmp_path), ["rmse"], 1, lambda _: None)
+
+
+# ----------------------------------------------------------------------------------------- searches that are shipped
+
+
+def of_the_book(case):
+    stored = json.loads(tune.shipped(case).read_text())
+    spans = [f"{key}={low!r}..{high!r}" for key, (low, high) in stored["ranges"].items()]
+    return stored, tune.search_of(case, stored["metric"], stored["sign"], spans, (), stored.get("limits"))
+
+
+@pytest.mark.parametrize("case", tune.searched())
+def test_a_tuned_case_of_the_book_has_the_best_values_of_its_search_and_none_at_an_edge(case):
+    stored, search = of_the_book(case)
+    definition = chapters.load(search.chapter).experiment(search.experiment)
+    present = content_of(definition, search.config({}))
+    assert stored["runs"][0]["content"] == present, f"of other values or code: dexrepro tune --update case={case}"
+    start, *others = (stored["sign"] * row["value"] for row in stored["runs"] if row["value"] is not None)
+    assert start <= min(others) + 0.01 * abs(min(others))
+    for key, (low, high) in search.ranges.items():
+        share = math.log(value_at(search.values, key) / low) / math.log(high / low)
+        assert tune.EDGE < share < 1 - tune.EDGE, key
+
+
+def test_what_is_called_the_best_of_a_search_has_one_and_rivals_have_as_many_runs():
+    called, budgets = set(), {}
+    for number in chapters.numbers():
+        for key, origin in provenance(number).items():
+            if ".cases." in key and origin.text.startswith("best of a search"):
+                called.add(key.replace(".cases.", "."))
+    assert called == {*tune.searched()}
+    for case in called:
+        stored, search = of_the_book(case)
+        about = search.experiment, search.metric, len(search.ranges) > 1
+        budgets.setdefault(about, set()).add(len(stored["runs"]))
+    assert all(len(found) == 1 for found in budgets.values()), budgets

@@ -18,7 +18,8 @@ GIVEN = "\n  EXPERIMENT.key=value    what shall be another value throughout, as 
 
 @command(
     "search a case's parameters for the best value of a metric",
-    ("case", "minimise", "maximise", "budget", "results", "workers"),
+    ("case", "minimise", "maximise", "limit", "budget", "results", "workers"),
+    option("--update", help="renew the search that is shipped, as it was made; without case= all"),
     more="\n  law.KEY=LOW..HIGH       a parameter to search; else those of the law that declare a range" + GIVEN,
 )  # fmt: skip
 def tune_command(options: argparse.Namespace) -> int:
@@ -26,16 +27,27 @@ def tune_command(options: argparse.Namespace) -> int:
     from dexrepro import chapters, tune
     from dexrepro.selection import quoted
 
-    known, rest = _search_words(options.selection, "tune")
+    words = options.selection
+    case = next((word[5:] for word in words if word.startswith("case=")), "")
+    if options.update and not case:
+        for name in tune.searched():
+            tune_command(argparse.Namespace(update=True, selection=[f"case={name}", *words]))
+        return OK
+    words = [*(tune.words_of(case) if options.update else ()), *words]
+    known, rest = _search_words(words, "tune")
     experiment = known["case"].partition(".")[0]
     given, parameters = _given(rest, [experiment])
-    search = tune.search_of(known["case"], known["metric"], known["sign"], parameters, [*map(quoted, given)])
+    if given and options.update:
+        raise InputError(f"{given[0]}: a search that is shipped is of the book's own values")
+    search = tune.search_of(
+        known["case"], known["metric"], known["sign"], parameters, [*map(quoted, given)], known["limit"]
+    )
     if not search.ranges:
         some = ", ".join(tune.numbers_of(search)[:SHOWN]) or "none of its parameters is a number"
         raise InputError(
             f"{search.name}: no parameter of its law declares a range; name some, as KEY=LOW..HIGH: {some}"
         )
-    found, path = tune.run(search, known["budget"], known["results"], known["workers"], say)
+    found, path = tune.run(search, known["budget"], known["results"], known["workers"], say, options.update)
     if found.best is None:
         raise InputError(f"{search.name}: {found.edges[0]}")
     values = ", ".join(f"{key} = {value:g}" for key, value in found.chosen.items()) or "as it stands"
@@ -106,12 +118,21 @@ def _search_words(words: Sequence[str], command: str, *needed: str) -> tuple[dic
     if len(goals) != 1:
         raise InputError("give minimise=METRIC or maximise=METRIC: the metric of the case that is to be best")
     known |= {
+        "limit": dict(map(_limit, filter(None, known.get("limit", "").split(",")))),
         "metric": known[goals[0]], "sign": 1 if goals[0] == "minimise" else -1,
         "budget": whole_number("budget", known.get("budget", "32"), 2, 4096),
         "results": folder_named(known.get("results", "results")),
         "workers": positive_workers(known.get("workers")),
     }  # fmt: skip
     return known, [word for word in words if word.partition("=")[0] not in own]
+
+
+def _limit(word: str) -> tuple[str, float]:
+    name, _, text = word.partition(":")
+    try:
+        return name, float(text)
+    except ValueError:
+        raise InputError(f"limit = {word} is not allowed: it must be METRIC:NUMBER") from None
 
 
 @command(

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from dexrepro import baselines, chapters
+from dexrepro import baselines, chapters, tune
 from dexrepro.claims import Claim, Erratum, cases_in, filled
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
 from dexrepro.damage import check_result
@@ -225,9 +225,16 @@ def _set(word: str, results: Path) -> Iterator[str]:
         for key in [key for key in origins if word in (key, key.partition(".")[2]) or key.endswith(f".{word}")]:
             row = {"key": key, "value": parameters.value_of(composed, key), **parameters.shown(origins[key])}
             yield f"{_parameter(row)}  (chapter {number})"
+            yield from _search(key)
         for row in parameters.index(composed, origins, ()):
             if row["plain"] == word:
                 yield f"{_parameter(row)}  (chapter {number})"
+
+
+def _search(key: str) -> Iterator[str]:
+    """How the best values of a case were found."""
+    if words := tune.words_of(key.replace(".cases.", ".")):
+        yield f"  searched    {', '.join(words)}; again: dexrepro tune --update case={key.replace('.cases.', '.')}"
 
 
 def _parameter(row: dict[str, Any]) -> str:

@@ -117,12 +117,12 @@ def _draw_errors(recordings: Recordings, metrics: AllMetrics, config: Config) ->
 
 LAWS = (
     *("letter_w", "tuned", "integrator", "no_network", "no_barrier", "no_network_no_barrier", "pd", "pd_stiff"),
-    *("pd_tuned", "pd_stiffest", "printed", "printed_forgetting", "printed_no_robust", "printed_sign"),
+    *("pd_tuned", "printed", "printed_forgetting", "printed_no_robust", "printed_sign"),
     *("printed_gain", "printed_robust", "sign_only", "sign_robust"),
 )
 SENSITIVITY = (
     *("letter_w", "light_model", "heavy_model", "rough_paper", "near_edge", "outside", "encoders", "encoders_slow"),
-    *("tuned_encoders", "pd_tuned_encoders", "pd_stiffest_encoders", "exponential", "exponential_slow", "small_robust"),
+    *("tuned_encoders", "pd_tuned_encoders", "exponential", "exponential_slow", "small_robust"),
     "printed_gain_no_network",
 )
 

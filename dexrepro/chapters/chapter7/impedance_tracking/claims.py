@@ -82,8 +82,8 @@ CLAIMS = (
         "C7.32e",
         "Tuned alike, muscle-like impedance tracks better than a constant one.",
         less(".tuned_muscle.rms_error", ".tuned_constant.rms_error"),
-        note="{.tuned_muscle.rms_error:.2g} and {.tuned_constant.rms_error:.2g} mm, the best of the same pairs "
-        "of gains.",
+        note="{.tuned_muscle.rms_error:.2g} and {.tuned_constant.rms_error:.2g} mm, each with the best gains of a "
+        "search.",
     ),
     fig_7_11(
         "C7.33",

@@ -64,14 +64,12 @@ CLAIMS = (
         "C8.02t",
         "With width and rates of each network the best of a search, the broad network still has the smaller error.",
         _better("tuned_broad", "tuned_fuzzy"),
-        searched=(
-            "widths from half to fifteen times ours by rates from a third to eight times ours, until a bound is left"
-        ),
-        note="Under friction. The wider, the better, until the Gaussians are flat over the circle and each network is "
-        "an integrator; then the rate decides, up to where the first transient leaves a bound. There the broad network "
-        "bears a gain of {.tuned_broad.early_gain:.0f} and errs by "
-        "{.tuned_broad.early_x:.2f}/{.tuned_broad.early_y:.2f} mm in x/y, the fixed one, all of whose nodes are there "
-        "from the start, {.tuned_fuzzy.early_gain:.0f} and {.tuned_fuzzy.early_x:.2f}/{.tuned_fuzzy.early_y:.2f} mm.",
+        searched="width of the network of G and rates of those of D and G, each over decades, no torque that chatters",
+        note="Under friction. The wider, the better, until the Gaussians are flat over the circle and the network is "
+        "an integrator; then the rate decides, up to where the torque begins to chatter. There the broad network has "
+        "a gain of {.tuned_broad.early_gain:.0f} and errs by "
+        "{.tuned_broad.early_x:.2f}/{.tuned_broad.early_y:.2f} mm in x/y, the fixed one "
+        "{.tuned_fuzzy.early_gain:.0f} and {.tuned_fuzzy.early_x:.2f}/{.tuned_fuzzy.early_y:.2f} mm.",
     ),
     ours_8_a(
         "C8.03",

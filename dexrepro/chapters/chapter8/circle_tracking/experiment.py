@@ -97,6 +97,8 @@ def measure(recording: Recording, config: Config) -> Metrics:
     for name, part in (("rms", steady), ("early", early)):
         for axis, letter in enumerate("xy"):
             metrics[f"{name}_{letter}"] = 1e3 * rms(part[:, axis])
+    steps = np.diff(recording["arm.torque"][recording.between(config.settled, config.early)], axis=0)
+    metrics["torque_step"] = rms(steps) if len(steps) else None
     if "network_force" in recording:
         counts = recording["nodes"][-1].astype(int)
         features = config.networks[2].basis.features_per_node
