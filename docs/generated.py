@@ -178,7 +178,7 @@ def _searches() -> Pages:
     text = (
         "# Searches for the best values\n\nCases whose gains are said to be the best of a search, and that search: "
         "each is shipped with all its runs in `results/baselines/tuning` and made again, in minutes, by `dexrepro tune "
-        "--update`. Rivals of one comparison have the same number of runs. Chapters 1, 2, 3 and 6 search in experiments "
+        "--update`. Rivals of one comparison have as many runs. Chapters 1, 2, 3 and 6 search in experiments "
         "of their own, whose tables stand in the report.\n\n"
         "| case | what is best | runs | over | found |\n| --- | --- | --- | --- | --- |\n"
     )
