@@ -69,8 +69,9 @@ CLAIMS = (
         where="1.4",
         note="With a constant stiffness and a partner of constant velocity it is {.c1_proposed.rmse_late:"
         ".2g} N. Where they vary it does not vanish: constant weights that predict a smooth contact position exist (a "
-        "difference quotient: thousands a second), but the weights stay below 0.1 and act as an integral of the force "
-        "error of gain alpha N / L with N = Z.Z. What such a proportional-integral law leaves is what is seen.",
+        "difference quotient: thousands a second), but the weights end at {.c3_proposed.weights_end:.2g} and act as an "
+        "integral of the force error of gain alpha N / L with N = Z.Z. What such a proportional-integral law leaves is "
+        "what is seen.",
     ),
     fig_1_10(
         "C1.07",

@@ -55,7 +55,7 @@ CLAIMS = (
         _holding("rmse", "passive", "fixed"),
         control=less(".t1_passive_calm.rmse", ".t1_fixed_calm.rmse"),
         note="It does so too with an object in which nothing varies. The printed impedance is close to its stability "
-        "limit: where object and arms vary it often loses (study).",
+        "limit: where object and arms vary it may lose (study).",
     ),
     fig_1_18(
         "C1.24a",

@@ -26,7 +26,7 @@ CLAIMS = (
         control=every(less(".constant.lag_most", 0.05), greater(".constant.clearance", 0.03)),
         where="1.5.2.1",
         note="The control has constant weights. Both bounds are ours, and with other gains of the field, none of "
-        "which is printed, it mostly exceeds one of them (study).",
+        "which is printed, it may exceed one of them (study).",
     ),
     Claim(
         "C1.19",
@@ -64,6 +64,6 @@ CLAIMS = (
         note="The tools' axes are opposite to within {.adjustable.facing:.2f} deg; the line between the "
         "hands lags by up to {.adjustable.pointing:.1f} deg because the field follows DFR's rotation "
         "slowly. The control keeps the orientation it starts with. With a smaller compliance of the field, which is "
-        "not printed, it often lags by more than the bound (study).",
+        "not printed, it may lag by more than the bound (study).",
     ),
 )

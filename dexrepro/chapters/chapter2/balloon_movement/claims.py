@@ -72,6 +72,6 @@ CLAIMS = (
         less(".tuned_proposed.rmse_circle", ".tuned_force.rmse_circle"),
         note="{.tuned_proposed.rmse_circle:.4f} against {.tuned_force.rmse_circle:.4f} "
         "N with one draw of tremor and sensor noise. Where balloon, sensor and servo vary (study), and on the axis on "
-        "which the gains were searched (T2.H), the force law is more often ahead: they are on a par.",
+        "which the gains were searched (T2.H), the force law may be ahead: they are on a par.",
     ),
 )

@@ -34,7 +34,7 @@ CLAIMS = (
         where="3.2.4",
         note="The control is the same observer with a model 10 % too light. Joint angles, "
         "speeds and torques are measured without noise; with noise see C3.08. Where what is not printed varies it "
-        "mostly fails (study).",
+        "may fail (study).",
     ),
     ours_3_11(
         "C3.07c",
@@ -55,7 +55,7 @@ CLAIMS = (
         ),
         where="3.2.4",
         note="The harm shown is that of noise on the momentum, without which (control) a larger gain is better; above "
-        "2 / period the observer itself is unstable. With a smaller hole it often fails (study).",
+        "2 / period the observer itself is unstable. With a smaller hole it may fail (study).",
     ),
     fig_3_12(
         "C3.09",
@@ -75,7 +75,7 @@ CLAIMS = (
         readings={"exact model": _lower("rcm_peak", "exact", "exactplain")},
         note="From {.plain_plus.rcm_peak:.4f} to {.plus.rcm_peak:.4f} m and from "
         "{.plain_minus.rcm_peak:.4f} to {.minus.rcm_peak:.4f} m, in single runs; where what "
-        "is not printed varies it is a matter of luck (study). The control drops the null-space torque altogether.",
+        "is not printed varies it may be otherwise (study). The control drops the null-space torque altogether.",
     ),
     Claim(
         "C3.10b",
@@ -99,7 +99,7 @@ CLAIMS = (
         readings={"exact model": _lower("error_peak", "exact", "exactplain")},
         note="From {.plain_plus.error_peak:.4f} to {.plus.error_peak:.4f} m and from {.plain_minus.error_peak:.4f} to "
         "{.minus.error_peak:.4f} m, in single runs. Without any null-space torque the peak is "
-        "{.free_plus.error_peak:.4f} and {.free_minus.error_peak:.4f} m. Where what is not printed varies it mostly "
-        "fails (study).",
+        "{.free_plus.error_peak:.4f} and {.free_minus.error_peak:.4f} m. Where what is not printed varies it may "
+        "fail (study).",
     ),
 )

@@ -22,16 +22,8 @@ CLAIMS = (
         less(".wide.unsafe_called_safe", 0.1),
         control=less(".narrow.unsafe_called_safe", 0.1),
         where="3.4.2.2",
-        note="The control is a patch that does not reach beyond the safety margin. It needs enough scenes, too: "
-        "{.scenes} were taken after fewer had let more than a tenth pass, and where what is not "
-        "printed varies it holds in about half of the draws (study).",
-    ),
-    Claim(
-        "C3.20b",
-        "3.C",
-        "A patch of 0.06 m, in which no wall can be seen from the margin of 0.06 m, does as well.",
-        less(".narrow.unsafe_called_safe", 0.1),
-        source="ours",
+        note="The control is a patch that does not reach beyond the safety margin, so that no wall "
+        "is seen in it. It needs enough scenes, too: {.scenes} were taken after fewer had let more than a tenth pass.",
     ),
 )
 REFERENCES = (Reference(".wide.train_accuracy", 0.98, "3.4.2.3", "-"),)

@@ -30,8 +30,8 @@ CLAIMS = (
         credits="the terms in SIG",
         note="The control, the exponential law of the linear terms, stays below the bound as well, which is "
         "{.printed.bound:.1f} s (printed constants: {.printed.bound_printed:.1f} s) where the longest settling takes "
-        "{.printed.settling_max:.2f} s; its time goes on growing. With other directions of the first error the claim "
-        "mostly holds too, but the control holds more often than not (study): at 10 rad the arm's own dynamics decide. "
+        "{.printed.settling_max:.2f} s; its time goes on growing. With other directions of the first error claim and "
+        "control may both hold (study): at 10 rad the arm's own dynamics decide. "
         "Torque unlimited, see C3.14b.",
     ),
     ours_3_a(

@@ -206,7 +206,7 @@ CLAIMS = (
         where="4.3.3, 4.5",
         note="Converge: the mean over a period moves by less than 10 % from one period to the next. An integrator's "
         "does as well, as it must by Lemma 4.1: its one feature, a constant, is persistently exciting. Where what is "
-        "not printed varies it mostly fails (study).",
+        "not printed varies it may fail (study).",
     ),
     ours_4_8(
         "C4.12b",

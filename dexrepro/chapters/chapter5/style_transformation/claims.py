@@ -35,7 +35,7 @@ CLAIMS = (
         "C5.11",
         "The shapes move gradually from a to the target as features are added.",
         gradual(STYLES),
-        control=gradual(".relearn"),
+        no_control="It is a matter of which weights are learned, and that is the reading.",
         printed=gradual(".printed_start"),
         readings={"both blocks of weights learned anew, as (5.29) has it": gradual(".relearn")},
         note="With the weights of the new features alone, as line 18 of Algorithm 5.1 has it. (5.29) as a whole, its "

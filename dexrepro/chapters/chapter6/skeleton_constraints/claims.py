@@ -75,7 +75,10 @@ CLAIMS = (
         "Loop 1 is needed before the relative step, as the wrists err more: without it the shoulders are wrong.",
         loop1_needed("unprojected_consistent", "unprojected_no_loop1"),
         control=loop1_needed("unprojected_no_occlusion", "unprojected_no_loop1_no_occlusion"),
-        readings={text: loop1_needed(case, "unprojected_no_loop1") for text, case in UNPROJECTED.items()},
+        readings={
+            "with the recorded acceleration (6.12)": loop1_needed("unprojected", "unprojected_no_loop1_recorded"),
+            "as printed in (6.15)": loop1_needed("unprojected_printed", "unprojected_no_loop1_printed"),
+        },
         credits="the errors of the wrists",
         searched="three readings of the acceleration, each without our projection",
         where="6.4.2",

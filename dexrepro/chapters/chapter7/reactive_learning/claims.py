@@ -26,8 +26,7 @@ CLAIMS = (
         "C7.10",
         "With 1, 2 and 5 groups of enhancement nodes the reactions are approached gradually.",
         gradual("frozen"),
-        control=gradual("refit"),
-        credits="old nodes that keep their weights",
+        no_control="It is a matter of which weights are learned, and that is the reading.",
         printed=gradual("printed_sign"),
         readings={"the old nodes' weights fitted again (E7.06)": gradual("refit")},
         note="The old nodes keep their weights, as (7.17) and (7.18) say: of {.frozen.no_reaction:.2f} cm the first "
