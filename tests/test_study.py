@@ -18,9 +18,10 @@ from conftest import ROOT
 
 from dexrepro import chapters
 from dexrepro.claims import LOOKS, Claim, less, robustness
+from dexrepro.config import baseline_dir
 from dexrepro.errors import InputError
 from dexrepro.pool import Pool
-from dexrepro.storage import read_json
+from dexrepro.storage import read_json, write_json
 from dexrepro.study import draws, samples, sampling, summaries
 from dexrepro.study.confirm import confirm
 
@@ -339,15 +340,18 @@ def test_of_two_studies_the_larger_is_shown_and_ours_where_equal(folder: Path) -
     path = sampling.run("90", "decay", 4, RESULTS, workers=1)
     assert path == RESULTS / "studies/decay.json"
     (folder / "shipped/study").mkdir(parents=True)
+    varied = read_json(path)["varied"]
     for size, shown in ((3, 4), (4, 4), (9, 9)):
         for name in ("decay", "other"):
-            (folder / f"shipped/study/{name}.json").write_text(
-                f'{{"chapter": "90", "experiment": "{name}", "samples": {size}, "varied": {{}}, "claims": {{}}}}'
-            )
+            summary = {"chapter": "90", "experiment": name, "samples": size, "varied": varied, "claims": {}}
+            write_json(folder / f"shipped/study/{name}.json", summary)
         decay, other = summaries.stored(RESULTS)
         assert decay["samples"] == shown
         assert bool(decay["claims"]) == (size < 9)
         assert other["samples"] == size
+    other = summary | {"experiment": "decay", "varied": {"decay.start": [0, 9]}}
+    write_json(folder / "shipped/study/decay.json", other)
+    assert summaries.stored(RESULTS)[0]["samples"] == 4, "of other ranges than today's"
 
 
 def test_an_unknown_claim_is_refused(folder: Path) -> None:
@@ -394,3 +398,18 @@ def test_a_word_of_a_study_is_wrong_in_at_most_one_of_twenty(share: float, wrong
                 alive[holds] = 0.0
     assert sum(words.values()) == pytest.approx(1)
     assert words[wrong] < 0.05, words
+
+
+STUDIES = sorted((baseline_dir() / "study").glob("*.json"))
+
+
+@pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
+def test_a_shipped_study_has_its_samples_and_is_of_what_would_be_drawn_and_run_today(path: Path) -> None:
+    found = read_json(path)
+    chapter, experiment = found["chapter"], found["experiment"]
+    rows = list(samples.read_samples(samples.samples_file(path)))
+    assert len(rows) == found["samples"]
+    assert found["varied"] == draws.varied(chapter, experiment)
+    today = samples.contents(chapter, experiment, rows[0])
+    other = [case for case, content in today.items() if rows[0]["cases"].get(case, {}).get("content") != content]
+    assert not other, "run again, or where no number changed: dexrepro study --confirm --update"

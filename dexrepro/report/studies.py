@@ -99,7 +99,7 @@ def _share(axes: Axes, place: int, row: Mapping[str, Any], look: Mapping[str, An
 
 def _margin(axes: Axes, place: int, row: Mapping[str, Any], look: Mapping[str, Any]) -> None:
     """Line from 5 to 95 %, bar from 25 to 75 %, mark at the median; what is beyond -1 or 1 is drawn at the edge."""
-    low, first, middle, third, high = np.clip(row.get("quantiles") or [row["median_margin"]] * 5, -1, 1)
+    low, first, middle, third, high = np.clip(row["quantiles"], -1, 1)
     axes.plot([low, high], [place, place], color=look["color"])
     axes.plot([first, third], [place, place], color=look["color"], linewidth=4.5, alpha=0.45, solid_capstyle="butt")
     axes.plot(middle, place, linestyle="", markersize=3.5, **look)

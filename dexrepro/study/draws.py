@@ -24,6 +24,12 @@ def parameters(chapter: str, experiment: str) -> dict[str, Provenance]:
     return {key: origin for key, origin in ranged(chapter, experiment).items() if origin.kind == "chosen"}
 
 
+def varied(chapter: str, experiment: str) -> dict[str, list[Any]]:
+    """The same as a summary has it: the words, or the ends of the range, by key."""
+    found = parameters(chapter, experiment).items()
+    return {key: list(origin.words) if origin.drawn else [origin.low, origin.high] for key, origin in found}
+
+
 @cache
 def ranged(chapter: str, experiment: str) -> dict[str, Provenance]:
     """Parameters that an experiment uses with a range or words to draw from, each of which has its own dimension."""

@@ -73,13 +73,7 @@ def run(
     is not known to decide every claim as that of the baselines does, and SamplesFailed, at the end, where a sample
     could not be made.
     """
-    if not uses_engine(chapters.load(chapter).experiment(experiment)):
-        engine = REFERENCE
-    if engine != REFERENCE and not crosscheck.agrees_on(experiment, results):
-        raise InputError(
-            f"engine = {engine} is not allowed for a study of {experiment}: its claims are not known to have the same "
-            f"verdicts under both engines; ask: dexrepro crosscheck chapter={chapter} only={experiment}"
-        )
+    engine = _engine_for(chapter, experiment, engine, results)
     target = samples.summary_file(experiment, results, update, only)
     for folder in (target.parent, samples.studies_folder(results)):
         folder.mkdir(parents=True, exist_ok=True)
@@ -100,23 +94,41 @@ def run(
             failed = [(index, value.sentence) for index, value in pool.results() if isinstance(value, Failure)]
             with locked(samples.studies_folder(results)):  # who ends last sees every sample
                 kept = kept_samples(chapter, experiment, results, only=only) if lacking else kept
-                found = summary(chapter, experiment, list(kept.values()))
-                if len(kept) >= held(target):  # fewer where the hours are over
-                    samples.write_samples(samples.samples_file(target), list(kept.values()))
-                    write_json(target, found)
-            if failed or time.time() > deadline:
-                break
+                words = _store(chapter, experiment, list(kept.values()), target)
             if count is None:  # what has no number to judge by, after draws of it, has none after more
-                unknown = {"word": OPEN if look == 0 else ""}
-                undecided = [c for c in claims if found["claims"].get(c.id, unknown)["word"] == OPEN]
-                if not undecided:
-                    break
+                undecided = [c for c in claims if words.get(c.id, OPEN if look == 0 else "") == OPEN]
+            if failed or not undecided or time.time() > deadline:
+                break
     if failed:
-        index, reason = failed[0]
-        more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
-        reason = reason.removesuffix(f"; {COMPLETES}")
-        raise SamplesFailed(f"sample {index}{more} of {experiment} failed: {reason}; {COMPLETES}")
+        raise SamplesFailed(_sentence(experiment, failed))
     return target
+
+
+def _engine_for(chapter: str, experiment: str, engine: str, results: Path) -> str:
+    """The engine of samples made now. Raises InputError where it may decide other than that of the baselines."""
+    if not uses_engine(chapters.load(chapter).experiment(experiment)):
+        return REFERENCE
+    if engine != REFERENCE and not crosscheck.agrees_on(experiment, results):
+        raise InputError(
+            f"engine = {engine} is not allowed for a study of {experiment}: its claims are not known to have the same "
+            f"verdicts under both engines; ask: dexrepro crosscheck chapter={chapter} only={experiment}"
+        )
+    return engine
+
+
+def _store(chapter: str, experiment: str, entries: list[dict[str, Any]], target: Path) -> dict[str, str]:
+    """Write samples and their summary unless more are held, as where the hours are over; every claim's word."""
+    found = summary(chapter, experiment, entries)
+    if len(entries) >= held(target):
+        samples.write_samples(samples.samples_file(target), entries)
+        write_json(target, found)
+    return {key: row["word"] for key, row in found["claims"].items()}
+
+
+def _sentence(experiment: str, failed: Sequence[tuple[Any, str]]) -> str:
+    index, reason = failed[0]
+    more = f" and {len(failed) - 1} more" if len(failed) > 1 else ""
+    return f"sample {index}{more} of {experiment} failed: {reason.removesuffix(f'; {COMPLETES}')}; {COMPLETES}"
 
 
 def _refuse_fewer(chapter: str, experiment: str, count: int, results: Path, target: Path) -> None:

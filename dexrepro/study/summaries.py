@@ -22,8 +22,9 @@ from dexrepro.study.samples import metrics_of, samples_file, studies_folder
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the margin, in a summary
 PERMUTATIONS = 999
 NUMBER = (int, float)
-ROW = {"samples": int, "holds": int, "share": NUMBER, "low": NUMBER, "high": NUMBER, "median_margin": NUMBER,
-       "parameter": (str, type(None)), "correlation": (int, float, type(None))}  # fmt: skip
+ROW = {"predicate": str, "samples": int, "holds": int, "share": NUMBER, "low": NUMBER, "high": NUMBER,
+       "median_margin": NUMBER, "quantiles": list, "parameter": (str, type(None)),
+       "correlation": (int, float, type(None))}  # fmt: skip
 
 
 def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -61,10 +62,9 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
         }  # fmt: skip
     engines = dict(sorted(Counter(entry.get("engine", REFERENCE) for entry in entries).items()))
     failed = sum(any("error" in row for row in entry["cases"].values()) for entry in entries)
-    varied = {key: list(o.words) if o.drawn else [o.low, o.high] for key, o in origins.items()}
     seconds = sum(row.get("seconds", 0.0) for entry in entries for row in entry["cases"].values())
     return {"chapter": chapter, "experiment": experiment, "samples": len(entries), "failed": failed,
-            "seconds": round(seconds, 1), "varied": varied, "claims": claims,
+            "seconds": round(seconds, 1), "varied": draws.varied(chapter, experiment), "claims": claims,
             **({"engines": engines} if set(engines) - {REFERENCE} else {})}  # fmt: skip
 
 
@@ -111,23 +111,21 @@ def _standard_ranks(rows: Array) -> Array:
 def stored(results: Path) -> list[dict[str, Any]]:
     """Every study there is: of those shipped and those made here, the one of more samples; ours where equal.
 
-    A study of a claim that says something else today, or is gone, says nothing of it: its row is left out.
+    One that varied something else than would be drawn today is left out, and of the others the row of a claim that
+    says something else today or is gone.
     """
     largest: dict[str, dict[str, Any]] = {}
     for path in (path for shipped in (True, False) for path in studies_folder(results, shipped).glob("*.json")):
         item = _summary(path)
-        if item["samples"] >= largest.get(path.name, item)["samples"]:
-            largest[path.name] = item
-    found = [largest[name] for name in sorted(largest)]
-    for item in list(found):
         known = chapters.load(item["chapter"]).claims if item["chapter"] in chapters.numbers() else ()
-        today = {claim.id: str(claim.predicate) for claim in known}
-        rows = item["claims"].items()
-        kept = {key: row for key, row in rows if key in today and row.get("predicate") in (None, today[key])}
-        if item["claims"] and not kept:
-            found.remove(item)
-        item["claims"] = kept
-    return found
+        today = {claim.id: str(claim.predicate) for claim in known if claim.experiment == item["experiment"]}
+        kept = {key: row for key, row in item["claims"].items() if row["predicate"] == today.get(key)}
+        other = bool(today) and item["varied"] != draws.varied(item["chapter"], item["experiment"])
+        if other or (item["claims"] and not kept):
+            continue
+        if item["samples"] >= largest.get(path.name, item)["samples"]:
+            largest[path.name] = item | {"claims": kept}
+    return [largest[name] for name in sorted(largest)]
 
 
 def _summary(path: Path) -> dict[str, Any]:
@@ -137,9 +135,9 @@ def _summary(path: Path) -> dict[str, Any]:
         require(found, {"chapter": str, "experiment": str, "samples": int, "varied": dict, "claims": dict})
         for key, row in found["claims"].items():
             require(row, ROW, f"{key}.")
-            quantiles = row.get("quantiles") or [row["median_margin"]] * len(QUANTILES)
-            if len(quantiles) != len(QUANTILES) or not all(isinstance(size, int | float) for size in quantiles):
-                raise ValueError(f"{key}.quantiles = {quantiles} is of another kind")
+            sizes = row["quantiles"]
+            if len(sizes) != len(QUANTILES) or not all(isinstance(size, int | float) for size in sizes):
+                raise ValueError(f"{key}.quantiles = {sizes} is of another kind")
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
         reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
         raise InputError(f"{path} is no study ({reason}); remove it and repeat: dexrepro study") from error
