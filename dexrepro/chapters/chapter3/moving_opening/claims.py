@@ -19,7 +19,7 @@ CLAIMS = (
         "C3.12b",
         "With the tool axis left free it follows as well (Dis_R below 10 mm).",
         less(".pos.moving_distance_max", 0.01),
-        note="A spring of 1000 N/m drives the arm into a joint limit.",
+        note="A strong spring drives the arm into a joint limit (pos_strong).",
     ),
     fig_3_16(
         "C3.21",

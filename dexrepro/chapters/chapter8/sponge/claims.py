@@ -33,7 +33,7 @@ CLAIMS = (
         credits="the adaptive impedance",
         printed=less(".learned.final_compression", ".lqr_printed_environment.final_compression"),
         note="At equal knowledge it is a tie: {.learned.final_compression:.2f} mm learned, "
-        "{.lqr_true.final_compression:.2f} mm for a regulator told the sponge of 400 N/m, "
+        "{.lqr_true.final_compression:.2f} mm for a regulator told the sponge of {.sponge.stiffness} N/m, "
         "{.lqr.final_compression:.2f} mm for one told 7 N/m. Below {.crossing_stiffness:.0f} N/m, which "
         "the weights and the regulator's model fix, the wrong model compresses less.",
     ),
