@@ -12,6 +12,7 @@ import pytest
 
 from dexrepro import chapters
 from dexrepro.checks import leaves, value_at
+from dexrepro.claims import Claim
 from dexrepro.config import compose_chapter
 from dexrepro.experiment import Experiment
 from dexrepro.provenance import provenance
@@ -36,6 +37,9 @@ NO_NUMBERS = (
 )
 QUOTED = {
     "C1.27": {16.0},  # operations of a general product
+    "C5.19": {0.01},  # an end of what was searched
+    "C6.28": {30.0},  # points of an obstacle that [16] is given
+    **dict.fromkeys(("C4.24", "C6.38", "C8.08t", "C8.16"), frozenset({1.0})),  # ms or kHz, the control period
     **dict.fromkeys(
         ("C4.03", "C4.19", "skill_reuse", "barrier_and_switch"), frozenset({10.0})
     ),  # ms, of a definition of ours
@@ -97,22 +101,36 @@ def own(folder: Path) -> frozenset[float]:
     return frozenset(_rounded(value) for value in values if isinstance(value, int | float))
 
 
-def texts_of(experiment: Experiment, number: str) -> Iterator[tuple[str, str]]:
+@cache
+def named(folder: Path) -> frozenset[float]:
+    """Numbers that the code of an experiment gives a name: windows, tolerances."""
+    trees = [
+        ast.parse((folder / part).read_text()) for part in ("experiment.py", "claims.py") if (folder / part).exists()
+    ]
+    values = {getattr(a.targets[0], "id", ""): a.value for t in trees for a in t.body if isinstance(a, ast.Assign)}
+    values = {name: value for name, value in values.items() if name not in ("CLAIMS", "REFERENCES")}
+    nodes = [n.value for value in values.values() for n in ast.walk(value) if isinstance(n, ast.Constant)]
+    return frozenset(_rounded(value) for value in nodes if isinstance(value, int | float))
+
+
+def judged_by(claim: Claim) -> frozenset[float]:
+    """Numbers of a claim's statement and predicates."""
+    predicates = [part for part in (claim.predicate, claim.control, claim.printed, *claim.readings.values()) if part]
+    bounds = [float(text) for part in predicates for text in re.findall(r"\d+\.?\d*(?:e-?\d+)?", str(part))]
+    stated = [size for value, unit in numbers(claim.statement) for size in (value, value * unit)]
+    return frozenset(map(_rounded, (*bounds, *stated)))
+
+
+def texts_of(experiment: Experiment) -> Iterator[tuple[str, str]]:
     for identifier, figure in experiment.figures.items():
         yield from ((identifier, figure.caption), (identifier, figure.alt))
     yield from experiment.tables.items()
     if experiment.film:
         yield experiment.name, experiment.film.caption
-    for claim in chapters.load(number).claims_of(experiment.name):
-        for text in (
-            claim.note,
-            claim.beside,
-            claim.searched,
-            claim.no_control,
-            claim.by_construction,
-            *claim.readings,
-        ):
-            yield claim.id, text
+
+
+def texts_about(claim: Claim) -> tuple[str, ...]:
+    return (claim.note, claim.beside, claim.searched, claim.no_control, claim.by_construction, *claim.readings)
 
 
 def labels_of(path: Path) -> Iterator[tuple[str, str]]:
@@ -139,9 +157,13 @@ def test_no_caption_title_note_or_label_types_a_number_of_a_run_or_a_parameter(n
     for experiment in chapter.experiments:
         folder = chapter.folder / experiment.name
         known = printed(number, experiment.name) | own(folder) | CONVENTIONS
-        for place, text in (*texts_of(experiment, number), *labels_of(folder / "figures.py")):
+        for place, text in (*texts_of(experiment), *labels_of(folder / "figures.py")):
             quoted = QUOTED.get(place.partition(":")[0], set())
             found += [(place, text[:70], item) for item in typed(text, known) if item not in quoted]
+        for claim in chapter.claims_of(experiment.name):
+            known = printed(number, experiment.name) | named(folder) | judged_by(claim) | CONVENTIONS
+            items = [(text, item) for text in texts_about(claim) for item in typed(text, known)]
+            found += [(claim.id, text[:70], item) for text, item in items if item not in QUOTED.get(claim.id, set())]
     shared = [label for path in chapter.folder.glob("*.py") if path.name != "errata.py" for label in labels_of(path)]
     found += [(place, text[:70], item) for place, text in shared for item in typed(text, printed(number) | CONVENTIONS)]
     for item in chapter.errata:

@@ -19,7 +19,7 @@ CLAIMS = (
         credits="the proposed motion regulation (1.4)",
         printed=greater(".printed.successes", 0.5),
         where="1.5.2.2",
-        note="Three start poses a size, friction contact in three dimensions; with a gain of {.law.gain}, our choice. The "
+        note="Three start poses a size, friction contact in three dimensions; a gain of {.law.gain}, our choice. The "
         "control presses as deep as gives about the desired force on this contact, without feedback: it carries the "
         "boxes too ({.fixed_small.successes}, {.fixed.successes} and {.fixed_large.successes} of {.fixed.runs}), with "
         "a force that errs by {.fixed_small.rmse:.0f} to {.fixed_large.rmse:.0f} N, with the law by up to "
