@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-from dexrepro import chapters
+from dexrepro import chapters, cli
 from dexrepro.claims import LOOKS, Claim, less, robustness
 from dexrepro.config import baseline_dir
 from dexrepro.errors import InputError
@@ -312,7 +312,9 @@ def test_a_case_that_failed_twice_is_carried_over_only_where_it_failed_alike(
     assert confirm("90", "decay", RESULTS) == (2, [])
 
 
-def test_a_study_never_becomes_smaller(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_study_never_becomes_smaller(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = sampling.run("90", "decay", 3, RESULTS, workers=1)
     lines, narrower = (RESULTS / "studies/decay.jsonl").read_text(), draws.parameters("90", "decay")
     narrower = {key: replace(origin, high=1.0) for key, origin in narrower.items()}
@@ -321,6 +323,8 @@ def test_a_study_never_becomes_smaller(folder: Path, monkeypatch: pytest.MonkeyP
     with pytest.raises(InputError, match=r"samples = 2 is not allowed: .* holds 3 samples of another configuration"):
         sampling.run("90", "decay", 2, RESULTS, workers=1)
     assert sampling.run("90", "decay", 3, RESULTS, workers=1, hours=1e-9) == path  # no time for any
+    assert cli.main(["study", "chapter=90", "only=decay", "samples=3", "hours=1e-9", "workers=1"]) == 0
+    assert "holds 3 samples, 0 of them of today's values and code: it stays as it was" in capsys.readouterr().err
     assert read_json(path)["samples"] == 3
     assert read_json(path)["varied"]["decay.start"] == [0.5, 2]
     assert (RESULTS / "studies/decay.jsonl").read_text() == lines

@@ -171,6 +171,10 @@ def _study(words: Sequence[str], update: bool = False, confirm: bool = False, sh
                 return FAILED
             if shown:
                 _print_study(name, path, results)
+            there = len(sampling.kept_samples(number, name, results, only=cases))
+            if there < (held := sampling.held(path)):
+                warn(f"{path} holds {held} samples, {there} of them of today's values and code: it stays as it was; to "
+                     "renew it with fewer, remove it first")  # fmt: skip
     return OK
 
 
