@@ -27,18 +27,29 @@ SPELT = {"in": "inch", "inches": "inch", "meters": "m", "metres": "m", "centimet
          "nsecs": "ns", "nanoseconds": "ns", "millis": "ms", "micros": "us", "nanos": "ns"}  # fmt: skip
 UNITS = {"", "-", *LENGTHS, *TIMES, *SPELT}
 ANGLES = {"deg", "degree", "degrees", "rad", "radian", "radians"}
-OTHERS = {*ANGLES, "px", "pixel", "pixels", "um", "µm", "μm", "micrometers", "micrometres", "microns", "km", "ft",
-          "feet", "mps", "norm", "normalised", "normalized"}  # fmt: skip
+NO_LENGTHS = {*ANGLES, *TIMES, "mps", "hz", "n", "v", "volts"}
+RELATIVE = {"norm", "normalised", "normalized"}
+OTHER_TIMES = {"hour", "hours", "hrs", "day", "days"}
+OTHER_LENGTHS = {"um", "µm", "μm", "micrometers", "micrometres", "microns", "dm", "km", "ft", "feet"}
+CONVERTED = {*OTHER_LENGTHS, *OTHER_TIMES, "h", "hr", "d", "nm", "frame", "frames"}  # by hand
+OTHERS = {*ANGLES, *RELATIVE, *OTHER_LENGTHS, "px", "pixel", "pixels", "mps"}
 TIME = {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}
-OFTEN = {"time": {"datetime", "elapsed"}, "x": {"px"}, "y": {"py"}, "z": {"pz"}}  # where no column has the plain name
-NANO = {"nanosec", "nanosecs", "nsec", "nsecs"}  # of a stamp whose whole seconds stand beside
+OFTEN = {"time": {"datetime", "elapsed"}, "x": {"px", "posx", "xpos"}, "y": {"py", "posy", "ypos"},
+         "z": {"pz", "posz", "zpos"}}  # fmt: skip  # where no column has the plain name
+NANO = {"nanosec", "nanosecs", "nsec", "nsecs", "nanoseconds"}  # of a stamp whose whole seconds stand beside
 NO_PLACE = {"orientation", "rotation", "rot", "angular", "angle", "euler", "quaternion", "quat", "q", "r", "twist",
             "linear", "velocity", "vel", "v", "u", "w", "omega", "speed", "dot", "ddot", "d", "dd", "delta", "diff",
             "acceleration", "accel", "acc", "a", "jerk", "gyro", "gyroscope", "mag", "magnetometer", "force", "f",
             "torque", "wrench", "moment", "error", "err", "e", "std", "var", "cov", "covariance", "seq"}  # fmt: skip
+PLACE = {"position", "pos"}
+WHOLE = {"sec", "secs", "seconds"}
+NAME = re.compile(  # neither a number nor prose
+    r"(?!(in|of|for|at|per|the|over|from|versus|and|und)\b|.*\b(is|are|by|to)\b)[^\W\d]", re.IGNORECASE
+)
+LEAD = re.compile(r"^([^:=]*[:=]|rem\b|[^\w\s\[(\"']+)\s+", re.IGNORECASE)  # "columns: t x y", "REM t x y", "! t x y"
 SAID = re.compile(r"(?:\bin|\bunits?)\W+(?:are|is)?\W*([a-zµμ]+)\b|[\[(]([a-zµμ]+)[\])]")  # units in words about a file
 REMARK = re.compile(r"(\S*)(^|\s+)(#(?!N/A|[A-Z/0]+[!?])|//)")  # behind the numbers of a row
-COMMENT = re.compile(r"\s*(#(?!N/A|[A-Z/0]+[!?])|%|//)[\s#%/]*")  # "#N/A", "#DIV/0!" and such are entries of a sheet
+COMMENT = re.compile(r"^\s*(#(?!N/A|[A-Z/0]+[!?])|%|//)[\s#%/]*")  # "#N/A", "#DIV/0!" and such are entries of a sheet
 STAMP = (
     r"(\d+ days? )?(\d{4}-\d\d-\d\d[t ])?\d?\d:\d\d:\d\d([.,]\d+)?(z|[-+]\d\d:?\d\d)?"  # ISO 8601's, a span of pandas
 )
@@ -79,8 +90,8 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
     Columns are parted by commas, semicolons, tabs or blanks; the decimal mark may be a comma where that is clear. Times
     are numbers, or dates with a clock's time as ISO 8601 writes them, or this alone. A
     line before the numbers may name the columns, in any order and among others, with their units in brackets. Lines
-    that begin with #, % or // are comments, as is what stands behind # or // in a row. otherwise: the unit of length
-    where neither header nor ``style`` tells it.
+    that begin with #, % or // are comments, one of which may name the columns, as is what stands behind # or // in a
+    row. otherwise: the unit of length where neither header nor ``style`` tells it.
     Raises ValueError with one sentence where the file cannot be used.
     """
     try:
@@ -147,45 +158,57 @@ class _Table:
         self.lines, self.wanted = lines, wanted
         self.columns: list[int] | None = None
         self.units: list[str] = [""] * len(wanted)
-        self.named = 0  # how many columns the header names
+        self.header: list[str] = []  # the names of all columns
+        self.blanks = False  # whether these are parted by blanks
         first = _first_row(lines, min(len(wanted), 3))
         stripped = [line.strip(" \t,;") for line in lines]
         rows = [k for k in range(first, len(lines)) if stripped[k]]
         self.body = [k for k in rows if not (stripped[k][0] in "#%/" and COMMENT.match(lines[k]))]
         self.separator = self._separator(lines[first - 1] if first else "")
+        self.widths = {len(self._split(lines[k], self.separator)) for k in self.body[:20]}
         head = [k for k in range(first) if stripped[k] and not stripped[k].startswith("sep=")]
         plain = [k for k in head if not COMMENT.match(lines[k])]
-        for k in head[::-1]:
-            if self.columns is None:
-                self._name(lines[k])
-                if self.columns is not None:  # rows that hold no numbers enough are to be refused, not left out
-                    self.body = [other for other in plain if other > k and _numbers(lines[other])] + self.body
-                    self.body = [other for other in self.body if stripped[other] != stripped[k]]  # the header again
-                    head.remove(k)
+        for k in sorted(head[::-1], key=self._is_prose):
+            unnamed = self.columns is None
+            self._name(lines[k])
+            if unnamed and self.columns is not None:  # rows that hold no numbers enough are to be refused, not left out
+                self.body = [other for other in plain if other > k and _numbers(lines[other])] + self.body
+                self.body = [other for other in self.body if stripped[other] != stripped[k]]  # the header again
+                head.remove(k)
         self.about = {k: lines[k].lower() for k in head}
         if plain and not self.body:
             shown = f"line {plain[-1] + 1} holds '{stripped[plain[-1]][:SHOWN]}'"
             parted = "it has no row of numbers parted by commas, semicolons, tabs or blanks"
             raise ValueError(f"{parted} for each of {', '.join(wanted)}; {shown}")
-        if plain and self.columns is None:
-            if _numbers(lines[plain[-1]]):
-                shown = f"line {plain[-1] + 1} holds '{lines[plain[-1]].strip()[:SHOWN]}'"
-                raise ValueError(f"{shown}: it must have {', '.join(wanted)}, or name the columns")
-            names = max(map(_fields, (lines[k] for k in reversed(plain))), key=self._found)
+        if plain and self.columns is None and _numbers(lines[plain[-1]]):
+            shown = f"line {plain[-1] + 1} holds '{lines[plain[-1]].strip()[:SHOWN]}'"
+            raise ValueError(f"{shown}: it must have {', '.join(wanted)}, or name the columns")
+        naming = plain[::-1] or [k for k in head[::-1] if self._is_header(lines[k])]
+        if naming and self.columns is None:
+            names = max((self._names(lines[k]) for k in naming), key=self._found)
             shown = ", ".join(name or "(no name)" for name in names)[:LONGEST]
             raise ValueError(f"its columns are {shown}; they must be {', '.join(wanted)}")
+        if self.columns is None and len(self.units) != len(wanted):
+            self.units = [""] * len(wanted)
+        if len(set(self.units[1:])) > 1:
+            shown = ", ".join(unit or "no unit" for unit in self.units[1:])
+            raise ValueError(f"its header gives {', '.join(wanted[1:])} in {shown}; give all in one unit")
         self.dated = wanted[0] == "time" and bool(self.body) and _seconds(self._chosen(self.body[0])[0]) is not None
         self._check(first)
 
     def _check(self, first: int) -> None:
         """Refuse rows in which columns have been shifted, and numbers that count the columns."""
-        rows = [self._split(self.lines[k], self.separator) for k in self.body[:20]]
-        longer = [k for k, row in enumerate(rows) if self.separator and len(row) > self.named > 0]
-        if longer:
-            line, count = self.body[longer[0]] + 1, len(rows[longer[0]])
-            raise ValueError(f"line {line} has {count} entries, but the header names {self.named} columns")
+        rows, named = [self._split(self.lines[k], self.separator) for k in self.body[:20]], len(self.header)
+        short = self.blanks and max(map(len, rows), default=named) < named
+        for k, row in zip(self.body, rows, strict=False):
+            note = not self.separator and not all(map(_is_entry, row[named - 1 : named + 1]))  # of several words
+            if named and (short or (len(row) > named and not note)):
+                shown = f"line {k + 1} has {len(row)} entries, but the header names {named} columns"
+                comma = ", or part them by ; if , is the decimal mark" if self.separator == "," else ""
+                how = " in one word" if self.blanks else comma
+                raise ValueError(f"{shown}, {', '.join(self.header)[:LONGEST]}; name each column{how}")
         counted = rows and len(rows[0]) > 2 and rows[0] == [str(column) for column in range(len(rows[0]))]
-        if counted and not self.named and any("." in entry for row in rows[1:2] for entry in row):
+        if counted and not named and any("." in entry for row in rows[1:2] for entry in row):
             raise ValueError(
                 f"line {first + 1} numbers the columns; delete it, or name them {', '.join(self.wanted)} there"
             )
@@ -217,7 +240,30 @@ class _Table:
 
     def _found(self, names: list[str]) -> int:
         """How many columns are the wanted ones."""
-        return len({_column(name, names) for name in self.wanted} - {None})
+        return len({ranked[0][-1] for wanted in self.wanted if (ranked := _ranked(wanted, names))})
+
+    def _is_prose(self, k: int) -> bool:
+        """Whether a line is a comment of another number of words than rows have entries."""
+        line = self.lines[k]
+        return bool(COMMENT.match(line) and not _mark(line) and len(self._names(line)) not in self.widths)
+
+    def _is_header(self, line: str) -> bool:
+        """Whether a comment names columns, if perhaps not the wanted ones."""
+        names = self._names(line)
+        if len(names) not in self.widths or not all(map(NAME.match, names)):
+            return False
+        bare = [len(_parts(name)) == self._found([name]) == 1 for name in names]
+        return self._found(names) > 1 or any(bare if _mark(line) else bare[:1])
+
+    def _names(self, line: str) -> list[str]:
+        """The names in a line; where only so each entry has one, without a word or mark before them or a remark behind
+        them, or parted by "and"."""
+        line = re.sub(r"^[\[({]([^\[\](){}]*)[\])}]$", r"\1", COMMENT.sub("", line).strip())
+        names = _fields(line)
+        for pattern, new in ((LEAD, ""), (r"\s(#|//).*", ""), (r",?\s+(and|und)\s+", ", ")):
+            if len(names) not in self.widths and len(fewer := _fields(re.sub(pattern, new, line))) in self.widths:
+                names = fewer
+        return names
 
     def _chosen(self, k: int) -> list[str]:
         """The entries of a line in the wanted columns, or all where nothing names these."""
@@ -226,42 +272,46 @@ class _Table:
 
     def _name(self, line: str) -> None:
         """Take the columns, or their units, from a line before the numbers, if it names them."""
-        names = _fields(COMMENT.sub("", line))
+        names = self._names(line)
         units = [entry.strip("[]() ") for entry in names]
         known = {entry.lower() for entry in units} <= UNITS | OTHERS
-        if known or self._found(names) < len(self.wanted):
+        if self.columns is not None:
+            if known and len(units) == len(self.header):  # a row of units above the names
+                self.units = [unit or units[column] for unit, column in zip(self.units, self.columns, strict=True)]
+        elif known or self._found(names) < len(self.wanted):
             if known or not (COMMENT.match(line) or _numbers(line)):
                 self.units = units  # perhaps a row of units under the names
-            return
-        found = [_column(name, names) for name in self.wanted]
-        self.columns, self.named = [column for column in found if column is not None], len(names)
-        under = self.units if len(self.units) == len(names) else [""] * len(names)
-        self.units = [_unit(names[column]) or under[column] for column in self.columns]
-        if len(set(self.units[1:])) > 1:
-            shown = ", ".join(unit or "no unit" for unit in self.units[1:])
-            raise ValueError(f"its header gives {', '.join(self.wanted[1:])} in {shown}; give all in one unit")
+        else:
+            self.columns, self.header = [_column(name, names) for name in self.wanted], names
+            self.blanks = not _mark(COMMENT.sub("", line))
+            under = self.units if len(self.units) == len(names) else [""] * len(names)
+            self.units = [_unit(names[column]) or under[column] for column in self.columns]
 
     def unit(self, style: Format, key: str, allowed: dict[str, float], column: int, otherwise: str) -> str | None:
         """The unit of a column by style and header, None where neither tells it. Refuses to go by ``otherwise`` where
         a line about the file speaks of another one."""
-        given, said = getattr(style, key), self.units[column].strip("-").lower() if self.columns else ""
-        said = SPELT.get(said, said)
+        given, said = getattr(style, key), self.units[column].strip("-").lower()
+        said, units = SPELT.get(said, said), ", ".join(allowed)
         if not (given or said):
             for k, line in self.about.items():
                 for match in SAID.finditer(line):
                     word = SPELT.get(match[1] or match[2], match[1] or match[2])
-                    if word != otherwise and (word in allowed or (column and word in OTHERS)):
-                        right = word if word in allowed else otherwise
+                    if word != otherwise and (word in allowed or word in (OTHERS if column else OTHER_TIMES)):
+                        right = f"set {key}={word}" if word in allowed else f"convert to one of {units} and set {key}="
+                        right = "give positions" if column and word in NO_LENGTHS else right
                         raise ValueError(
-                            f"line {k + 1} says '{match[0]}', and no column has a unit; set {key}={right} if that is "
+                            f"line {k + 1} says '{match[0]}', and no column has a unit; {right} if that is "
                             f"the one of its {'lengths' if column else 'times'}, else {key}={otherwise}"
                         )
-        if said in ANGLES and not given:
-            raise ValueError(f"its header gives {self.wanted[column]} in {said}, which is no length; give positions")
+        shown = f"its header gives {self.wanted[column]} in {said}"
+        if column and (said in NO_LENGTHS or re.search(r"[^\W\d]\s*/", said)):
+            raise ValueError(f"{shown}, which is no length; give positions")
+        if said in CONVERTED or said[:1].isdigit() or (said in RELATIVE and not given):
+            raise ValueError(f"{shown}; convert it to one of {units}")
         if said and said not in allowed and not given:
-            raise ValueError(f"its header gives {self.wanted[column]} in {said}; set {key}= to {', '.join(allowed)}")
+            raise ValueError(f"{shown}; set {key}= to {units}")
         if given and said in allowed and said != given:
-            raise ValueError(f"its header gives {self.wanted[column]} in {said}, not in {given}; set {key}={said}")
+            raise ValueError(f"{shown}, not in {given}; set {key}={said}")
         return given or said or None
 
     def data(self) -> tuple[Array, Array]:
@@ -308,11 +358,17 @@ class _Table:
         return np.array(data).reshape(-1, len(self.wanted)), np.array(numbers)
 
 
+def _mark(line: str) -> str | None:
+    """What parts the entries of a header, None for blanks."""
+    return next((mark for mark in ";\t," if mark in line), None)
+
+
 def _fields(line: str) -> list[str]:
     """Entries of a header, whatever parts them; a unit in brackets stays with its name."""
-    line = re.sub(r"\s+([\[(])", r"\1", line.strip())
-    separator = next((mark for mark in ";\t," if mark in line), None)
-    return [entry.strip(" \"'") for entry in (_entries(line, separator) if separator else line.split())]
+    line = re.sub(r"(?<=[^\s\])])\s+([\[(])", r"\1", line.strip())
+    words = re.findall(r"""(?:"[^"]*"|[\[(][^\])]*[\])]|\S)+""", line)
+    row = _entries(line, mark) if (mark := _mark(line)) else words
+    return [entry.strip(" \"'") for entry in row]
 
 
 def _entries(line: str, separator: str) -> list[str]:
@@ -336,22 +392,31 @@ def _unit(name: str) -> str:
     return found or (first if rest and first in OTHERS else "")
 
 
-def _column(wanted: str, names: Sequence[str]) -> int | None:
-    """Which of the names is the wanted column: the one of fewest words that has its word, a place's before others."""
+def _ranked(wanted: str, names: Sequence[str]) -> list[tuple[bool, bool, bool, bool, int]]:
+    """The columns that have the wanted word, first those that have no other than a unit, a place's before others."""
     ranked = []
     plain = TIME if wanted == "time" else {wanted}
     for column, name in enumerate(names):
         words = {*_parts(name)}
         if words & (plain | OFTEN[wanted]) and not words & NO_PLACE:
-            ranked.append((not words & plain, not {"position", "pos"} & words, len(_parts(name)), column))
-    ranked.sort()
-    if len(ranked) > 1 and ranked[0][:3] == ranked[1][:3]:
-        first, second = (column for *_, column in ranked[:2])
-        both = f"{names[first]} and {names[second]} (columns {first + 1} and {second + 1})"
-        if wanted == "time" and NANO & {*_parts(names[first]), *_parts(names[second])}:
-            raise ValueError(f"its time is split into {both}; give it in one column, 1e-9 times the nanoseconds added")
+            more = words - plain - OFTEN[wanted] - PLACE - (UNITS | OTHERS) | words & {"min"}
+            ranked.append((not words & plain, bool(more), not PLACE & words, len(words) > 1, column))
+    return sorted(ranked)
+
+
+def _column(wanted: str, names: Sequence[str]) -> int:
+    """Which of the names is the wanted column, the first of those ranked. Refuses several of the same rank."""
+    ranked = _ranked(wanted, names)
+    first, *others = (column for *rank, column in ranked if rank == [*ranked[0][:-1]])
+    nano = [column for column, name in enumerate(names) if wanted == "time" and NANO & {*_parts(name)}]
+    whole = [column for column in (first, *others) if WHOLE & {*_parts(names[column])}]
+    one, other = (whole[0], nano[0]) if nano and whole else (first, *others, first)[:2]
+    both = f"{names[one]} and {names[other]} (columns {one + 1} and {other + 1})"
+    if nano and whole:
+        raise ValueError(f"its time is split into {both}; give it in one column, 1e-9 times the nanoseconds added")
+    if others:
         raise ValueError(f"its columns {both} could both be {wanted}; rename one")
-    return ranked[0][-1] if ranked else None
+    return first
 
 
 def _check(time: Array, position: Array, numbers: Array, tick: str | None) -> None:

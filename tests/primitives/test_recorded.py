@@ -116,6 +116,34 @@ COMMAS = rows("{t};{x};{y}").replace(".", ",")
         "time,x,y\n" + PLAIN.replace("\n2.5", "\ntime,x,y\n2.5"),
         "Length Units,Meters\ntime,x,y\n" + PLAIN,
         "time,x,y,picture\n" + rows("{t},{x},{y}," + "QUJD" * 50_000),
+        "# columns: x y t z\n" + rows("{x} {y} {t} 5"),
+        "# Format: x y t\n" + rows("{x} {y} {t}"),
+        "Order = x y t\n" + rows("{x},{y},{t}"),
+        "! x y t\n" + rows("{x} {y} {t}"),
+        "-- x y t\n" + rows("{x} {y} {t}"),
+        "REM x y t\n" + rows("{x} {y} {t}"),
+        "x y t # by hand\n" + rows("{x} {y} {t}"),
+        '"x" "y" "elapsed time"\n' + rows("{x} {y} {t}"),
+        "t x y note\n" + rows("{t} {x} {y} of trial 5"),
+        "# [x, y, t]\n" + rows("{x},{y},{t}"),
+        "# (x y t)\n" + rows("{x} {y} {t}"),
+        "# xpos ypos time\n" + rows("{x} {y} {t}"),
+        "# x-position, y-position and time\n" + rows("{x} {y} {t}"),
+        "# x y t\n# the time series of x and y\n" + rows("{x} {y} {t}"),
+        *(
+            f"# {prose}\n" + PLAIN
+            for prose in (
+                "recorded by Ann", "Ann, lab 2, right hand", "sampled over time", "time in s", "Time: 10:05 UTC",
+                "y is up", "x to right, y up, Ann", "T = 3", "1, 2, 3", "time", "28.11.2026, t, lab",
+            )
+        ),
+        "time,time since start,x,y\n" + rows("{t},5,{x},{y}"),
+        "time,goal position x,goal position y,x,y\n" + rows("{t},5,5,{x},{y}"),
+        "time,x [m],x goal [m],y [m],y goal [m]\n" + rows("{t},{x},5,{y},5"),
+        "s,m,m\n\ntime,x,y\n" + PLAIN,
+        "# s,m,m\n" + PLAIN,
+        "t (in s) x (in m) y (in m)\n" + rows("{t} {x} {y}"),
+        "Frame#,Time,X,Y\n" + rows("7,{t},{x},{y}"),
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
@@ -156,6 +184,9 @@ def test_dates_and_clocks_as_iso_8601_writes_them_are_times(
         ("time in minutes,x in mm,y in mm", Format(), 1e-3, 60),
         ("time [milliseconds],x [millimeters],y [millimeters]", Format(), 1e-3, 1e-3),
         ("time,x,y\n[ms],[mm],[mm]", Format(), 1e-3, 1e-3),
+        ("ms,mm,mm\nnote\ntime,x,y", Format(), 1e-3, 1e-3),
+        ("[ms] [mm] [mm]\ntime x y", Format(), 1e-3, 1e-3),
+        ("# ms,mm,mm", Format(), 1e-3, 1e-3),
         ("time,x,y\nseconds,centimeters,centimeters", Format(), 1e-2, 1),
         ("time,x,y", Format("mm", "ms"), 1e-3, 1e-3),
         ("time,x [px],y [px]", Format("mm", "s"), 1e-3, 1.0),
@@ -181,7 +212,12 @@ def test_units_come_from_the_header_or_from_who_knows_better(
         ("time,x [mm],y [mm]", Format("cm"), "its header gives x in mm, not in cm; set unit=mm"),
         ("time,x_px,y_px", Format(), "its header gives x in px; set unit= to m, cm, mm, inch"),
         ("time,pixelX,pixelY", Format(), "its header gives x in pixel; set unit= to m, cm, mm, inch"),
-        ("time,x_µm,y_µm", Format(), "its header gives x in µm; set unit= to m, cm, mm, inch"),
+        ("time,x_µm,y_µm", Format(), "its header gives x in µm; convert it to one of m, cm, mm, inch"),
+        ("time,x [dm],y [dm]", Format("cm"), "its header gives x in dm; convert it to one of m, cm, mm, inch"),
+        ("time,x [0.1 mm],y [0.1 mm]", Format("mm"), "its header gives x in 0.1 mm; convert it to one of m, cm"),
+        ("time,x_norm,y_norm", Format(), "its header gives x in norm; convert it to one of m, cm, mm, inch"),
+        ("time,x [mm/s],y [mm/s]", Format("mm"), "its header gives x in mm/s, which is no length; give positions"),
+        ("time,x [N],y [N]", Format(), "its header gives x in n, which is no length; give positions"),
         ("t_µs,x,y [mm]", Format(), "its header gives x, y in no unit, mm; give all in one unit"),
         ("time,x_deg,y_deg", Format(), "its header gives x in deg, which is no length; give positions"),
         ("time,twist.linear.x,twist.linear.y", Format(), "its columns are time, twist.linear.x, twist.linear.y; they"),
@@ -189,13 +225,16 @@ def test_units_come_from_the_header_or_from_who_knows_better(
         (",x,y", Format(), "its columns are .no name., x, y; they must be time, x, y"),
         ("# all in mm\ntime,x,y", Format(), "line 1 says 'in mm', .* set unit=mm if .* else unit=m"),
         ("Length Units,Millimeters\ntime,x,y", Format(), "line 1 says 'units,millimeters', .* set unit=mm if"),
+        ("# in pixels\ntime,x,y", Format(), "'in pixels', .*; convert to one of m, cm, mm, inch and set unit= if"),
+        ("# in degrees\ntime,x,y", Format(), "line 1 says 'in degrees', .*; give positions if .* else unit=m"),
+        ("# in hours\ntime,x,y", Format(), "'in hours', .*; convert to one of s, ms, us, ns, min and set time_unit="),
         (
             "# time in ms\ntime,x [mm],y [mm]",
             Format(),
             "line 1 says 'in ms', .* set time_unit=ms if .* else time_unit=s",
         ),
         ("# time,x,y [px]\n", Format(), "its header gives x, y in no unit, px"),
-        ("time [h],x,y", Format(), "its header gives time in h; set time_unit= to s, ms, us, ns, min"),
+        ("time [h],x,y", Format(), "its header gives time in h; convert it to one of s, ms, us, ns, min"),
         ("time,x1,y1", Format(), "its columns are time, x1, y1; they must be time, x, y"),
         ("Frame,X,Y\n,mm,mm", Format(), "its columns are Frame, X, Y; they must be time, x, y"),
         ("time\tx y", Format(), "its columns are time, x y; they must be time, x, y"),
@@ -204,6 +243,20 @@ def test_units_come_from_the_header_or_from_who_knows_better(
             Format(),
             r"its columns left.x and right.x .columns 2 and 3. could both be x; rename one",
         ),
+        ("time,wrist x,hand tip x,y", Format(), r"its columns wrist x and hand tip x .* could both be x; rename one"),
+        ("time,goal_x,x_tip_now,y", Format(), r"its columns goal_x and x_tip_now .* could both be x; rename one"),
+        ("sec,nanosec,x,y", Format(), "its time is split into sec and nanosec .columns 1 and 2.; give it in one col"),
+        ("x,y,nsecs,secs", Format(), "its time is split into secs and nsecs .columns 4 and 3.; give it in one column"),
+        *(
+            (f"# {names}", Format(), f"its columns are {names}; they must be time, x, y")
+            for names in ("time, vx, vy", "time, q1, q2", "t, lon, lat", "X-Achse, Y-Achse, Zeitpunkt", "x, y, frame")
+        ),
+        (
+            "# time [s], shoulder [rad], elbow [rad]",
+            Format(),
+            r"its columns are time.s., shoulder.rad., elbow.rad.; they",
+        ),
+        ("# t u v", Format(), "its columns are t, u, v; they must be time, x, y"),
         (
             "stamp.sec,stamp.nanosec,x,y",
             Format(),
@@ -349,7 +402,26 @@ def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
             '"time","x","y"\n',
             "line 2 has 4 entries, but .* names 3 col",
         ),
-        ([f"{k},05,1,5,2,0" for k in range(9)], "time,x,y\n", "line 2 has 6 entries, but the header names 3 columns"),
+        ([f"{k},05,1,5,2,0" for k in range(9)], "time,x,y\n", "line 2 has 6 entries, .* names 3 columns, .* or part"),
+        *(
+            ([row.replace(",", " ") for row in ROWS], header, f"line 2 has 3 entries, but the header names {count} col")
+            for header, count in (
+                ("elapsed time x y\n", 4),
+                ("Time (s) Pos X (mm) Pos Y (mm)\n", 5),
+                ("% data t x y\n", 4),
+                ("Time s X mm Y mm\n", 6),
+            )
+        ),
+        (
+            [f'"{k}" {row.replace(",", " ")}' for k, row in enumerate(ROWS)],
+            '"time" "x" "y"\n',
+            "line 2 has 4 entries, but the header names 3 columns, time, x, y; name each column in one word",
+        ),
+        (
+            [f"2024-01-01 10:00:0{k}.05 {k} 0" for k in range(9)],
+            "time x y\n",
+            "line 2 has 4 entries, but the header na",
+        ),
         (
             [f"0.{k};1,{k}00;0.5" for k in range(1, 10)],
             "t;x;y\n",
