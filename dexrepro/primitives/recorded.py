@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import csv
 import glob
+import os
 import re
 import warnings
 from collections.abc import Sequence
@@ -48,8 +49,10 @@ NAME = re.compile(  # neither a number nor prose
 )
 LEAD = re.compile(r"^([^:=]*[:=]|rem\b|[^\w\s\[(\"']+)\s+", re.IGNORECASE)  # "columns: t x y", "REM t x y", "! t x y"
 SAID = re.compile(r"(?:\bin|\bunits?)\W+(?:are|is)?\W*([a-zµμ]+)\b|[\[(]([a-zµμ]+)[\])]")  # units in words about a file
-REMARK = re.compile(r"(\S*)(^|\s+)(#(?!N/A|[A-Z/0]+[!?])|//)")  # behind the numbers of a row
-COMMENT = re.compile(r"^\s*(#(?!N/A|[A-Z/0]+[!?])|%|//)[\s#%/]*")  # "#N/A", "#DIV/0!" and such are entries of a sheet
+HASH = r"#(?!N/A|[NН]/[DД]|NV(?=[\"';,\t]|$)|[¡¿]?[A-ZÀ-ÞА-Я/0]+[!?])"  # "#N/A", "#DIV/0!", ... are entries of a sheet
+REMARK = re.compile(rf"(\S*)(^|\s+)({HASH}|//)")  # behind the numbers of a row
+COMMENT = re.compile(rf"^\s*({HASH}|%|//)[\s#%/]*")
+OPENED = re.compile(r'(^|[,;\t])"[^"]*$')  # an entry in quotes that goes on in the next line
 STAMP = (
     r"(\d+ days? )?(\d{4}-\d\d-\d\d[t ])?\d?\d:\d\d:\d\d([.,]\d+)?(z|[-+]\d\d:?\d\d)?"  # ISO 8601's, a span of pandas
 )
@@ -57,6 +60,7 @@ FEWEST = 8
 LONG = 60.0  # s; a file that lasts longer with steps of a second or more has other stamps than seconds
 SHORT = 0.01  # s; no movement of a hand
 WIDE = 2.0  # m; neither
+FAR = 1e7  # m; as far as from the equator to a pole
 csv.field_size_limit(2**31 - 1)  # by default 128 kB, which a note or a picture in base64 beside the path exceeds
 SHOWN, LONGEST = 60, 300  # letters of a line and of a header in a sentence
 PAUSE = 10.0  # times the usual step; where such pauses take a third of the time, clocks have jumped
@@ -68,13 +72,13 @@ class Format:
 
     unit: of its lengths, m, cm, mm or inch; time_unit: s, ms, us, ns or min; None: as its header says. duplicates:
     "drop" keeps the first of several samples of one instant, "refuse" refuses them. encoding: of a file that is neither
-    UTF-8 nor UTF-16, such as cp1252.
+    UTF-8 nor UTF-16, such as cp1252; 1252 is the same.
     """
 
     unit: str | None = None
     time_unit: str | None = None
     duplicates: str = "refuse"
-    encoding: str | None = None
+    encoding: str | int | None = None
 
     def __post_init__(self) -> None:
         allowed = {"unit": [*LENGTHS], "time_unit": [*TIMES], "duplicates": ["refuse", "drop"]}
@@ -82,6 +86,8 @@ class Format:
             value = getattr(self, key)
             if value not in values and (value is not None or key == "duplicates"):
                 raise ValueError(f"{key} = {value} is not allowed: it must be one of {', '.join(values)}")
+        if not isinstance(self.encoding, str | int | None):
+            raise ValueError(f"encoding = {self.encoding} is not allowed: it must be a name such as utf-8 or cp1252")
 
 
 def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str = "m") -> tuple[Array, Array]:
@@ -95,7 +101,7 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
     Raises ValueError with one sentence where the file cannot be used.
     """
     try:
-        lines = _text(path, style).replace("\u2212", "-").splitlines()
+        lines = _lines(path, style)
     except OSError as error:
         raise ValueError(f"cannot read '{path}': {error.strerror}") from None
     except ValueError as error:
@@ -120,8 +126,10 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
 def read_corners(path: str, style: Format = Format(), otherwise: str = "m") -> Array:
     """Corners (n, 2) [m] of a polygon, in order, from a file with the columns x, y; see :func:`read_path`."""
     try:
-        table = _Table(_text(path, style).splitlines(), ("x", "y"))
-        corners = LENGTHS[table.unit(style, "unit", LENGTHS, 1, otherwise) or otherwise] * table._row_by_row()[0]
+        table = _Table(_lines(path, style), ("x", "y"))
+        corners, numbers = table._row_by_row()
+        corners = LENGTHS[table.unit(style, "unit", LENGTHS, 1, otherwise) or otherwise] * corners
+        _check_near(corners, numbers)
     except OSError as error:
         raise ValueError(f"cannot read '{path}': {error.strerror}") from None
     except ValueError as error:
@@ -135,16 +143,22 @@ def read_corners(path: str, style: Format = Format(), otherwise: str = "m") -> A
     return corners
 
 
-def _text(path: str, style: Format) -> str:
-    """What a file holds. Raises ValueError with half a sentence where it is another kind of text than a table."""
-    text = decoded(Path(path).expanduser().read_bytes(), style.encoding)
+def _lines(path: str, style: Format) -> list[str]:
+    """The lines of a file. Raises ValueError with half a sentence where it is another kind of text than a table."""
+    encoding = f"cp{style.encoding}" if isinstance(style.encoding, int) else style.encoding  # of Windows, such as 1252
+    text = decoded(Path(os.path.expanduser(path)).read_bytes(), encoding).replace("\u2212", "-")
     begin = text.lstrip()[:SHOWN]
     if not begin:
         raise ValueError("it is empty")
     if begin[0] in "{<" or re.match(r"\[\s*[\[{\d-]", begin):
         kind = "XML" if begin[0] == "<" else "JSON or a printed list"
         raise ValueError(f"it is {kind}, not columns of numbers; export them as CSV")
-    return text
+    lines = text.splitlines()
+    for k, line in enumerate(lines):
+        if '"' in line and OPENED.search(line) and line.count('"') % 2:
+            end = next((j for j in range(k + 1, min(k + 20, len(lines))) if lines[j].count('"') % 2), k)
+            lines[k : end + 1] = [" ".join(lines[k : end + 1]), *[""] * (end - k)]
+    return lines
 
 
 class _Table:
@@ -445,8 +459,16 @@ def _check(time: Array, position: Array, numbers: Array, tick: str | None) -> No
         raise ValueError(
             f"it lasts {total:.3g} s from line {numbers[0]} to {numbers[-1]}; its unit of time must be another"
         )
+    _check_near(position, numbers)
     if not np.ptp(position, axis=0).any():
         raise ValueError("it never moves: all its samples are at one place")
+
+
+def _check_near(position: Array, numbers: Array) -> None:
+    """Refuse a place that no hand can reach; ``numbers``: lines of the places."""
+    away = np.abs(position).max(axis=1)
+    if (far := np.flatnonzero(away > FAR)).size:
+        raise ValueError(f"line {numbers[far[0]]} is {away[far[0]]:.3g} m away; mend it, or set unit=")
 
 
 def resampled(time: ArrayLike, position: ArrayLike, samples: int) -> Array:
@@ -458,8 +480,8 @@ def resampled(time: ArrayLike, position: ArrayLike, samples: int) -> Array:
 
 def matching(pattern: str) -> list[str]:
     """The file of that name or, where there is none, the files that a pattern such as ``letters/*.csv`` matches."""
-    name = str(Path(pattern).expanduser())
-    return [name] if Path(name).exists() else sorted(glob.glob(name))
+    name = os.path.expanduser(pattern)  # "~t.csv" is the home of nobody
+    return [name] if os.path.exists(name) else sorted(glob.glob(name))
 
 
 def demonstrations(
@@ -471,6 +493,8 @@ def demonstrations(
     and where there are more files than ``count``.
     """
     patterns = [files] if isinstance(files, str) else list(files)
+    if folder := next((name for name in patterns if os.path.isdir(os.path.expanduser(name))), None):
+        raise ValueError(f"'{folder}' is a folder; give its files, such as {os.path.join(folder, '*.csv')}")
     found = [name for pattern in patterns for name in matching(pattern) or [pattern]]
     if len(found) > count:
         raise ValueError(f"{len(found)} files are more than the {count} demonstrations of the experiment")

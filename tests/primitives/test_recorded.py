@@ -144,6 +144,10 @@ COMMAS = rows("{t};{x};{y}").replace(".", ",")
         "# s,m,m\n" + PLAIN,
         "t (in s) x (in m) y (in m)\n" + rows("{t} {x} {y}"),
         "Frame#,Time,X,Y\n" + rows("7,{t},{x},{y}"),
+        '"time\n[s]","x\n[m]","y\n[m]"\n' + PLAIN,
+        '"time\r\n[s]";"x\r\n[m]";"y\r\n[m]"\r\n' + COMMAS,
+        "note,time,x,y\n" + rows('"a\n\nb",{t},{x},{y}'),
+        'a screen of 5"\ntime,x,y\n' + PLAIN,
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
@@ -329,8 +333,13 @@ def test_a_file_in_eight_bits_is_read_when_its_encoding_is_named(tmp_path: Path)
     ):
         read_path(str(tmp_path / "path.csv"), axes=2)
     assert read_path(str(tmp_path / "path.csv"), Format(encoding="cp1252"), 2)[1] == pytest.approx(WANTED)
+    assert read_path(str(tmp_path / "path.csv"), Format(encoding=1252), 2)[1] == pytest.approx(WANTED)
     with pytest.raises(ValueError, match="encoding = latin-17 is not allowed"):
         read_path(str(tmp_path / "path.csv"), Format(encoding="latin-17"), 2)
+    with pytest.raises(ValueError, match="encoding = cp5 is not allowed: it must be a name such as utf-8 or cp1252"):
+        read_path(str(tmp_path / "path.csv"), Format(encoding=5), 2)
+    with pytest.raises(ValueError, match=r"encoding = \['utf-8'\] is not allowed: it must be a name such as utf-8"):
+        Format(encoding=["utf-8"])
 
 
 def test_a_million_rows_are_not_read_row_by_row_which_takes_numpys_time_fifty_fold(tmp_path: Path) -> None:
@@ -386,7 +395,13 @@ def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
         (["# x"], "", "has 0 samples"),
         ([], "time,x,y\n", "it has no row of numbers parted by commas, semicolons, tabs or blanks"),
         (["0.5|1|2"] * 9, "time|x|y\n", r"it has no row of numbers parted by .*; line 10 holds '0.5.1.2'"),
-        (["#N/A,1,2"] * 9, "0,1,2\n1,1,3\n", "line 3 holds '#N/A,1,2': every entry must be a finite number"),
+        *(
+            ([f"{error},1,2"] * 9, "0,1,2\n1,1,3\n", f"line 3 holds '{error},1,2': every entry must be a finite number")
+            for error in ("#N/A", "#NV", "#DIV/0!", "#ÜBERLAUF!", "#¡VALOR!")
+        ),
+        ([*ROWS[:4], '2.4,"a', 'b",1', ROWS[2], *ROWS[5:]], "time,x,y\n", "line 6 holds"),
+        (['2.0,"0\n",1', *ROWS[1:4], ROWS[2], *ROWS[4:]], "time,x,y\n", "its time does not increase at line 7"),
+        ([*ROWS[:4], "2.4,2e300,1", *ROWS[5:]], "time,x,y\n", r"line 6 is 2e\+300 m away; mend it, or set unit="),
         (
             [f"28.11.2026 10:00:0{k}.5,{k},1" for k in range(9)],
             "time,x,y\n",
@@ -500,6 +515,19 @@ def test_several_files_take_turns(tmp_path: Path) -> None:
         demonstrations(str(tmp_path / "*.csv"), 1, 20, Format(), axes=2)
 
 
+def test_a_folder_is_answered_by_how_its_files_are_named(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"is a folder; give its files, such as .*/\*\.csv$"):
+        demonstrations([str(tmp_path)], 1, 20, Format(), axes=2)
+
+
+def test_a_name_may_begin_with_a_tilde_that_is_nobodys_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "~t.csv").write_text("\n".join(ROWS))
+    assert demonstrations("~t.csv", 1, 20, Format("cm"), axes=2)[0][-1] == pytest.approx([0.09, 0.18])
+    with pytest.raises(ValueError, match=r"cannot read '~u.csv': No such file"):
+        demonstrations("~u.csv", 1, 20, Format(), axes=2)
+
+
 @pytest.mark.parametrize(
     "name", ["letter (1).csv", "Übung_größe.csv", "a=b.csv", "trial[1].csv", "Öl & Büro (neu)/#1.csv"]
 )
@@ -547,6 +575,11 @@ def test_a_corner_that_another_one_only_shares_a_coordinate_with_is_kept(tmp_pat
 def test_what_has_no_area_is_no_outline(tmp_path: Path, rows: list[str]) -> None:
     with pytest.raises(ValueError, match=r"path.csv': it has no "):
         read_corners(write(tmp_path, rows, "x,y\n"))
+
+
+def test_a_corner_out_of_reach_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"path.csv': line 3 is 4e\+300 m away"):
+        read_corners(write(tmp_path, ["0,0", "4e300,0", "0,1"], "x,y\n"))
 
 
 def test_an_outline_that_is_not_there_is_named() -> None:
