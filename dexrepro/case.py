@@ -10,11 +10,13 @@ import time
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import chdir
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from dexrepro.checks import leaves
+from dexrepro.checks import leaves, returned, returned_numbers
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
 from dexrepro.storage import finite
@@ -36,13 +38,30 @@ def run(experiment: Experiment, config: Config, seed: int) -> tuple[Recording, M
     return recording, experiment.simulation.measure(recording, config), wall
 
 
+def watched(experiment: Experiment, ends: list[str]) -> Experiment:
+    """The same, but what its functions give is checked, and how its simulations end is added to ``ends``."""
+    module, result = experiment.simulation, replace(experiment)
+
+    def simulate(*given: Any) -> Recording:
+        must = "a Recording, such as world.run gives"
+        recording: Recording = returned(module.simulate(*given), "experiment.py: simulate", must, Recording)
+        ends.append(recording.status)
+        return recording
+
+    def measure(*given: Any) -> Metrics:
+        return dict(returned_numbers(module.measure(*given), "experiment.py: measure"))
+
+    vars(result)["simulation"] = SimpleNamespace(simulate=simulate, measure=measure)
+    return result
+
+
 def measured(experiment: Experiment, config: Mapping[str, Any]) -> Metrics:
     """Metrics of a case whose configuration says all, its seed and engine too; no picture is made."""
     from dexrepro.physics import engine
 
     engine.use(config.get("engine", engine.REFERENCE))
     with chdir("."), engine.unseen():  # a law may go elsewhere
-        return finite(run(experiment, live(config), config["seed"])[1])
+        return finite(run(watched(experiment, []), live(config), config["seed"])[1])
 
 
 def live(config: Mapping[str, Any]) -> Config:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+import numbers
 import os
 import re
 import sys
+import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
+
+import numpy as np
 
 from dexrepro.errors import InputError, refused
 
@@ -126,6 +130,21 @@ def check_lengths(config: Mapping[str, Any], shipped: Mapping[str, Any], where: 
             check_lengths(value, book, f"{where}.{key}")
         elif isinstance(value, list) and isinstance(book, list) and _VECTOR.search(key) and len(value) != len(book):
             raise refused(f"{where}.{key}", value, f"have {len(book)} values")
+
+
+def returned(thing: Any, function: str, must: str, kind: type = Mapping, of: type | tuple[type, ...] = object) -> Any:
+    """What a function of an experiment gave, if it is of a kind and, of a dictionary, all in it of another."""
+    wrong = [] if isinstance(thing, kind) else [repr(thing)]
+    if not wrong and isinstance(thing, Mapping):
+        wrong = [f"{{{key!r}: {value!r}}}" for key, value in thing.items() if not isinstance(value, of)]
+    if wrong:
+        raise InputError(f"{function} gave {textwrap.shorten(wrong[0], 60, placeholder=' …')}; it must return {must}")
+    return thing
+
+
+def returned_numbers(thing: Any, function: str) -> Any:
+    """The same of metrics."""
+    return returned(thing, function, "a dictionary of numbers", of=(numbers.Real, np.bool_, type(None)))
 
 
 def is_whole(value: Any) -> bool:

@@ -274,6 +274,11 @@ def _followed(module: str) -> bool:
     return place is not None and not is_installed(Path(place))
 
 
+def is_users(path: Path) -> bool:
+    """Whether there is such a file and it is neither of this package nor installed."""
+    return path.is_file() and not path.is_relative_to(Path(__file__).parent) and not is_installed(path)
+
+
 @cache
 def is_installed(path: Path) -> bool:
     """Whether a file lies where Python or its packages are installed."""

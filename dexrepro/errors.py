@@ -22,11 +22,6 @@ def one_line(thing: object) -> str:
     return " ".join(str(thing).split())
 
 
-def sentence(error: BaseException) -> str:
-    """What went wrong, in one line."""
-    return one_line(error) if isinstance(error, InputError) else f"{type(error).__name__}: {one_line(error)}"
-
-
 @contextmanager
 def reading(folder: Path) -> Iterator[None]:
     """While modules of a folder are imported: what is wrong in them is an InputError with the file and the line."""

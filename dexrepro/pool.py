@@ -23,25 +23,57 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from multiprocessing.reduction import ForkingPickler
+from pathlib import Path
 from typing import Any
 
-from dexrepro.errors import COMPLETES, InputError, sentence, whole_number
+from dexrepro.closure import is_users
+from dexrepro.errors import COMPLETES, InputError, one_line, whole_number
 
 TICK = 0.2  # s between looks at workers whose end nobody announces
 BLAS_THREADS = "DEXREPRO_BLAS_THREADS"  # variable of the environment: another count than one, to see what rounding does
 
 
+def sentence(error: BaseException) -> str:
+    """What went wrong, in one line, and the line of the user's file that did it."""
+    told, text, place = isinstance(error, InputError), one_line(error), ""
+    if frame := _own_line(error.__cause__ if told else error):
+        file = Path(frame.filename)
+        file = file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
+        text = one_line(error.msg if isinstance(error, SyntaxError) else text or frame.line)
+        place = f" ({file}, line {frame.lineno})" if file.name not in text else ""
+    return ("" if told else f"{type(error).__name__}: ") + text + place
+
+
+def _own_line(error: BaseException | None) -> traceback.FrameSummary | None:
+    """The innermost line of the user's that led to an error; to one without words, of anybody."""
+    found = None
+    while error is not None:
+        frames = [*traceback.extract_tb(error.__traceback__)]
+        if isinstance(error, SyntaxError) and error.filename:
+            frames.append(traceback.FrameSummary(error.filename, error.lineno, ""))
+        own = [frame for frame in frames if is_users(Path(frame.filename))]
+        if own or not (found or str(error)):
+            found = (own or frames or [None])[-1]
+        error = error.__cause__
+    return found
+
+
 @dataclass(frozen=True)
 class Failure:
-    """Why a task gave no result, in one sentence; ``exit`` is the status of a process that died of it."""
+    """Why a task gave no result, in one sentence; ``exit`` is the status of a process that died of it.
+
+    told: the sentence says all, the traceback need not be looked at.
+    """
 
     sentence: str
     traceback: str = ""
     exit: int | None = None
+    told: bool = True
 
     @classmethod
     def of(cls, error: BaseException) -> Failure:
-        return cls(sentence(error), "".join(traceback.format_exception(error)))
+        told = isinstance(error, InputError)
+        return cls(sentence(error), "".join(traceback.format_exception(error)), told=told)
 
 
 @dataclass

@@ -12,13 +12,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dexrepro import chapters
-from dexrepro.checks import leaves
+from dexrepro.checks import leaves, returned, returned_numbers
+from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
 from dexrepro.plan import PARTIAL, presentation
 from dexrepro.storage import copy, finite, read_json, read_yaml, whole_folder, write_json
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
 SUMMARY = "summary"  # stands for the numbers over several cases in nested metrics
 
@@ -67,7 +69,7 @@ class RunEntry:
 def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config) -> None:
     """Add the numbers over several cases to nested metrics."""
     if function := experiment.function("summarise"):
-        nested[SUMMARY] = finite(function(nested, config))
+        nested[SUMMARY] = finite(returned_numbers(function(nested, config), "experiment.py: summarise"))
 
 
 @contextlib.contextmanager
@@ -111,6 +113,8 @@ def recorded(experiment: Experiment, folder: Path) -> tuple[dict[str, Recording]
 
 def present(chapter: str, experiment: Experiment, folder: Path) -> None:
     """Numbers over several cases, claims, tables and figures of a result folder, from its files alone."""
+    from pandas import DataFrame
+
     from dexrepro.report import style
 
     recordings, nested, config, incomplete = recorded(experiment, folder)
@@ -124,14 +128,30 @@ def present(chapter: str, experiment: Experiment, folder: Path) -> None:
         shutil.rmtree(folder / name, ignore_errors=True)
         (folder / name).mkdir()
     if tabulate := experiment.function("tabulate"):
+        must = "a dictionary of data frames by their names in TABLES"
         with _lenient(incomplete):
-            for identifier, table in tabulate(recordings, nested, config).items():
+            tables = returned(tabulate(recordings, nested, config), "figures.py: tabulate", must, of=DataFrame)
+            for identifier, table in tables.items():
                 if len(table.columns):  # of some cases there may be nothing to tell
                     table.to_csv(folder / "tables" / f"{identifier}.csv", index=False, float_format="%.6g")
     if draw := experiment.function("draw"):
         with style.style(), _lenient(incomplete):
-            for identifier, figure in draw(recordings, nested, config).items():
+            for identifier, figure in drawn(experiment, draw(recordings, nested, config)).items():
                 style.save(figure, folder / "figures", identifier)
+
+
+def drawn(experiment: Experiment, given: Any) -> dict[str, Figure]:
+    """What ``draw`` gave, if its figures are those that the experiment names."""
+    import matplotlib.figure
+
+    returned(
+        given, "figures.py: draw", "a dictionary of figures by their names in FIGURES", of=matplotlib.figure.Figure
+    )
+    if unknown := [name for name in given if name not in experiment.figures]:
+        raise InputError(
+            f"figures.py: draw gave '{unknown[0]}', not in FIGURES; {nearest(unknown[0], experiment.figures)}"
+        )
+    return dict(given)
 
 
 def redraw(chapter: str, name: str, target: Path) -> None:

@@ -12,15 +12,14 @@ import time
 import warnings
 import zlib
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 from dexrepro import __version__, chapters
-from dexrepro.case import live, targets
+from dexrepro.case import live, targets, watched
 from dexrepro.case import run as run_case
 from dexrepro.checks import differences
 from dexrepro.errors import COMPLETES, InputError, one_line
@@ -54,11 +53,13 @@ class Outcome:
     """What a run did: result folders and failures as sentences, by name; in what experiments differ from the book.
 
     unusable: cases that a law of the user's ended by giving no number, as sentences; there is a result up to then.
+    tracebacks: files that say more of a failure, by name.
     """
 
     folders: dict[str, Path] = field(default_factory=dict)
     failures: dict[str, str] = field(default_factory=dict)
     unusable: dict[str, str] = field(default_factory=dict)
+    tracebacks: dict[str, Path] = field(default_factory=dict)
     differs: dict[str, list[str]] = field(default_factory=dict)
 
     @property
@@ -108,16 +109,8 @@ def execute(job: Job) -> CaseEntry:
 def _run(experiment: Experiment, config: Config, seed: int) -> tuple[Recording, Metrics, float]:
     """As ``case.run``. Raises InputError with the reason why a run ended early where it then cannot be measured."""
     ends: list[str] = []
-
-    def simulate(*given: Any) -> Recording:
-        recording: Recording = experiment.simulation.simulate(*given)
-        ends.append(recording.status)
-        return recording
-
-    watched = replace(experiment)
-    vars(watched)["simulation"] = SimpleNamespace(simulate=simulate, measure=experiment.simulation.measure)
     try:
-        return run_case(watched, config, seed)
+        return run_case(watched(experiment, ends), config, seed)
     except Exception as error:
         if ends in ([], [Recording.status]):
             raise
@@ -335,7 +328,9 @@ class _Run:
 
     def _failed(self, task: Job | Plan, failure: Failure) -> None:
         name = task.name if isinstance(task, Job) else task.experiment
-        self.outcome.failures[name] = _kept_failure(task, failure)
+        self.outcome.failures[name], kept = _kept_failure(task, failure)
+        if not failure.told and kept.exists():
+            self.outcome.tracebacks[name] = kept
         if isinstance(task, Job):
             self.progress.failed(name, self.outcome.failures[name])
 
@@ -422,8 +417,8 @@ def up_to_date(plan: Plan, presented: bool = True) -> bool:
         return False
 
 
-def _kept_failure(task: Job | Plan, failure: Failure) -> str:
-    """Keep why a task failed beside the cached cases; the sentence about it, which says whether it did so before."""
+def _kept_failure(task: Job | Plan, failure: Failure) -> tuple[str, Path]:
+    """Keep why a task failed beside the cached cases; the sentence, with whether it did so before, and the file."""
     job = task if isinstance(task, Job) else task.jobs[0]
     path = Path(job.folder).parent / f"{task.case if isinstance(task, Job) else 'assemble'}.error.txt"
     text, before = failure.sentence, ""
@@ -433,4 +428,4 @@ def _kept_failure(task: Job | Plan, failure: Failure) -> str:
         text = f"{text.removesuffix(f'; {COMPLETES}')}, as it did before"
     with contextlib.suppress(OSError):
         write_text(path, f"{job.content if failure.exit is not None else ''}\n{text}\n{failure.traceback}")
-    return text
+    return text, path

@@ -146,3 +146,73 @@ def test_a_value_that_a_case_does_not_set_yet_is_added_as_it_is_told(mine: Comma
 
 def test_without_a_film_to_renew_it_is_said_what_can_be_animated(mine: Command) -> None:
     assert "a FOLDER or only=EXPERIMENT" in mine("render --experiments more chapter=lab")[1]
+
+
+MEASURE, DRAW = "    if not recording.series:", '    return {"lab.10": figure}'
+
+
+@pytest.mark.parametrize(
+    ("file", "line", "instead", "said"),
+    [
+        ("experiment", MEASURE, "    return", "measure gave None; it must return a dictionary of numbers"),
+        ("experiment", MEASURE, "    return [2]", "measure gave [2]; it must return a dictionary of numbers"),
+        ("experiment", MEASURE, '    return {"a": "b"}', "measure gave {'a': 'b'}; it must return a dictionary of"),
+        ("experiment", MEASURE, '    return {"a": recording["x"]}', "measure gave {'a': array("),
+        (
+            "experiment",
+            'return Recording({"time"',
+            'Recording({"time"',
+            "simulate gave None; it must return a Recording",
+        ),
+        ("experiment", '    return {"ratio"', '    {"ratio"', "summarise gave None; it must return a dictionary of"),
+        ("figures", DRAW, "", "draw gave None; it must return a dictionary of figures"),
+        ("figures", DRAW, '    return {"lab.10": axes}', "draw gave {'lab.10': <Axes"),
+        ("figures", DRAW, '    return {"lab.9": figure}', "draw gave 'lab.9', not in FIGURES;"),
+        ("figures", '    return {"Tlab.1"', '    {"Tlab.1"', "tabulate gave None; it must return a dictionary of data"),
+    ],
+)
+def test_what_a_function_of_an_experiment_gives_is_named_where_it_is_of_no_use(
+    mine: Command, file: str, line: str, instead: str, said: str
+) -> None:
+    path = Path("more/lab/fade", f"{file}.py")
+    assert line in path.read_text()
+    path.write_text(path.read_text().replace(line, instead + f"\n{line}" * (line == MEASURE), 1))
+    status, text = mine("run --experiments more chapter=lab only=fade workers=1")
+    assert (status, f"failed: {file}.py: {said}" in text) == (1, True), text
+    assert "damaged" not in text
+
+
+@pytest.mark.parametrize(
+    ("file", "line", "code", "said"),
+    [
+        ("experiment", MEASURE, "1 / 0", "ZeroDivisionError: division by zero"),
+        ("experiment", MEASURE, "assert not recording", "AssertionError: assert not recording"),
+        ("experiment", MEASURE, "raise SystemExit(3)", "SystemExit: 3"),
+        ("experiment", MEASURE, "return return", "SyntaxError: invalid syntax"),
+        ("figures", DRAW, "1 / 0", "ZeroDivisionError: division by zero"),
+    ],
+)
+def test_an_error_in_code_of_ones_own_is_said_with_its_line(
+    mine: Command, file: str, line: str, code: str, said: str
+) -> None:
+    path = Path("more/lab/fade", f"{file}.py")
+    before, _, after = path.read_text().partition(line)
+    path.write_text(f"{before}    {code}\n{line}{after}")
+    status, text = mine("run --experiments more chapter=lab only=fade workers=1")
+    assert status == 1
+    assert f"failed: {said} (more/lab/fade/{file}.py, line {before.count(chr(10)) + 1})" in text
+    assert "in " in Path(text.rpartition("traceback: ")[2].split(";")[0].strip()).read_text()
+
+
+def test_a_figure_that_is_not_drawn_is_named(mine: Command) -> None:
+    path = Path("more/lab/fade/figures.py")
+    path.write_text(path.read_text().replace(DRAW, "    return {}"))
+    status, text = mine("run --experiments more chapter=lab only=fade workers=1")
+    assert (status, "fade: draw in figures.py made no lab.10" in text) == (0, True), text
+
+
+def test_a_claim_that_is_there_twice_is_named(mine: Command) -> None:
+    path = Path("more/lab/fade/claims.py")
+    path.write_text(f"{path.read_text()}\nCLAIMS = 2 * tuple(CLAIMS)\n")
+    status, text = mine("list --experiments more chapter=lab")
+    assert (status, "lab.01 names more than one claim" in text) == (2, True), text

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -147,7 +148,10 @@ def test_a_failing_case_stops_no_other_and_loses_nothing(toy: Path) -> None:
     run()
     before = (toy / "results/chapter90/decay/metrics.json").read_bytes()
     outcome = run("+decay.cases.fast.fail=true")
-    assert outcome.failures == {"decay.fast": "ValueError: told to fail"}
+    assert outcome.failures.keys() == outcome.tracebacks.keys() == {"decay.fast"}
+    line = r"ValueError: told to fail \(\S+/decay/experiment.py, line \d+\)"
+    assert re.fullmatch(line, outcome.failures["decay.fast"])
+    assert "in simulate" in outcome.tracebacks["decay.fast"].read_text()
     assert (toy / "results/chapter90/decay/metrics.json").read_bytes() == before
     cached = {path.parent.name.split("-")[0] for path in (toy / "results/.cache/decay").glob("*/case.json")}
     assert {"plain", "halved", "gain1", "gain2"} <= cached

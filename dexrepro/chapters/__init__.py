@@ -15,6 +15,7 @@ import os
 import re
 import shlex
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -143,6 +144,8 @@ def load(number: str) -> Chapter:
     experiments = tuple(Experiment(f"{package.__name__}.{name}", folder / name) for name in found)
     claims = [claim for experiment in experiments for claim in experiment.claims]
     claims += _part(package, folder, "claims", "CLAIMS")
+    if twice := [name for name, count in Counter(claim.id for claim in claims).items() if count > 1]:
+        raise InputError(f"{folder}: {twice[0]} names more than one claim; give each an id of its own")
     return Chapter(
         number,
         str(getattr(package, "TITLE", folder.name)),

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from dexrepro.commands import FAILED, OK, command, option, out, say, warn
-from dexrepro.errors import InputError, refused, sentence
+from dexrepro.errors import InputError, refused
 from dexrepro.keys import SELECTION
 
 
@@ -101,6 +101,7 @@ def draw_command(options: argparse.Namespace) -> int:
     """``dexrepro draw [FOLDER ...] [key=value ...]``: figures and tables again from what is on disk."""
     from dexrepro import chapters
     from dexrepro.damage import check_result
+    from dexrepro.pool import sentence
     from dexrepro.result import redraw
     from dexrepro.selection import selected
     from dexrepro.storage import read_json

@@ -104,7 +104,8 @@ def _sentences(outcome: Outcome) -> list[str]:
         experiment = names[0].partition(".")[0]
         under = _differs(experiment, outcome.differs.get(experiment, []))
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-        said.append("; ".join([f"{names[0]}{more} failed: {reason}", *under]))
+        kept = [f"traceback: {outcome.tracebacks[names[0]]}"] if names[0] in outcome.tracebacks else []
+        said.append("; ".join([f"{names[0]}{more} failed: {reason}", *kept, *under]))
     return said
 
 
@@ -145,7 +146,22 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
         _print_summary(results, outcome.differs, skipped)
     for text in dict.fromkeys(text for result in results.values() for text in result.warnings):
         warn(f"warning: {text}")
+    for name, result in results.items():
+        if left := _undrawn(name, result):
+            warn(f"warning: {name}: draw in figures.py made no {', '.join(left)}")
     return outcome
+
+
+def _undrawn(name: str, result: Result) -> list[str]:
+    """Figures that an experiment of the user's names, but does not draw of all its cases."""
+    from dexrepro import chapters
+    from dexrepro.report.style import file_stem
+
+    chapter = result.run["chapter"]
+    if chapter == chapters.OWN or not chapters.is_added(chapter) or result.run["differs"]:
+        return []
+    declared = chapters.load(chapter).experiment(name).figures
+    return [identifier for identifier in declared if file_stem(identifier) not in result.figures]
 
 
 def launch(arguments: Sequence[str], job: Callable[[Any], None]) -> int:

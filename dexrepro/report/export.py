@@ -16,7 +16,7 @@ from dexrepro.errors import refused
 from dexrepro.experiment import Experiment
 from dexrepro.plan import matches
 from dexrepro.report.style import TWO_COLUMNS, file_stem, style
-from dexrepro.result import recorded
+from dexrepro.result import drawn, recorded
 
 FORMATS = ("pdf", "png", "svg")
 SLIDE = 12.0  # inch: a figure as wide as a slide (13.33) with its margins
@@ -35,7 +35,7 @@ def export(
     recordings, nested, config, _ = recorded(experiment, folder)
     target.mkdir(parents=True, exist_ok=True)
     with style():
-        for identifier, figure in (draw(recordings, nested, config) if draw else {}).items():
+        for identifier, figure in (drawn(experiment, draw(recordings, nested, config)) if draw else {}).items():
             if wanted and not matches(wanted, identifier):
                 continue
             path = target / f"{file_stem(identifier)}.{kind}"
