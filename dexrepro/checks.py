@@ -88,7 +88,7 @@ def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: st
         if isinstance(book, Mapping) and isinstance(value, Mapping):
             check_types(value, book, f"{where}.{key}")
         if isinstance(book, Mapping) and (is_number(value) or isinstance(value, bool)):
-            raise refused(f"{where}.{key}", value, "hold keys with values, or be null")
+            raise refused(f"{where}.{key}", value, "hold keys with values")
         numbers = [is_number(item) for _, item in leaves(book)]
         if not isinstance(book, Mapping) and numbers and all(numbers):
             alone = is_number(book) and (key == "duration" or _STEP.search(key))  # others may be a list, one a case
@@ -106,6 +106,8 @@ def check_files(config: Mapping[str, Any], shipped: Mapping[str, Any], where: st
     """Refuse what names no file, or none that every case can read, where the shipped configuration has none."""
     for key in [key for key, book in leaves(shipped) if book is None and key.rpartition(".")[2] in FILES]:
         given = value_at(config, key)
+        if isinstance(given, Mapping) and "file" in given:  # what else it says of the file is no name
+            key, given = f"{key}.file", given["file"]
         for place, name in [*leaves(given)] or [("", given)]:
             dotted = f"{where}.{key}.{place}".rstrip(".")
             if name is not None and not (isinstance(name, str) and name):

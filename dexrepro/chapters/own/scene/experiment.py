@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from dexrepro.arrays import Array, Rng
+from dexrepro.chapters.own.blocks import NAME, NUMBER, PLACE, VECTOR, checked, vector
 from dexrepro.chapters.own.drivers import driver
 from dexrepro.chapters.own.paths import leader_path
 from dexrepro.checks import is_number
 from dexrepro.control.motion import Path
-from dexrepro.errors import InputError, nearest, refused
+from dexrepro.errors import InputError, refused
 from dexrepro.experiment import Config, Metrics, Recording
 from dexrepro.measures import rms
 from dexrepro.physics.elements import Elastic, Ends, Push, TipForce
@@ -33,14 +34,11 @@ def model(arm: Arm, gravity: Sequence[float], mass_error: float, key: str = "arm
     """What laws may know of the arm."""
     if not isinstance(arm, Arm):
         raise ValueError(f"scene.{key} is no arm: name one by its _target_, such as dexrepro.robots.urdf.from_urdf")
-    if not _vector(gravity):
+    if not is_number(mass_error):
+        raise ValueError(str(refused("scene.model.mass_error", repr(mass_error), "be a number")))
+    if not vector(gravity):
         raise ValueError(f"scene.gravity = {gravity} is not allowed: it must be three numbers")
     return RigidBodyModel(arm, gravity, mass_error)
-
-
-def _vector(value: Any, length: int = 3) -> bool:
-    numbers = isinstance(value, list) and all(map(is_number, value))
-    return numbers and len(value) == length
 
 
 def scene(config: Config, noise: np.random.Generator | None = None) -> World:
@@ -50,8 +48,11 @@ def scene(config: Config, noise: np.random.Generator | None = None) -> World:
     noise: random numbers of the sensors, which are exact without.
     """
     given = {name: _blocks(config, name) for name in BLOCKS}
+    checked(config.servo, "scene.servo", SERVO, SERVO)
+    if not is_number(config.regulation):
+        raise refused("scene.regulation", repr(config.regulation), "be a number")
     if not (config.desired_force is None or is_number(config.desired_force)):
-        raise refused("scene.desired_force", config.desired_force, "be a number, or null")
+        raise refused("scene.desired_force", repr(config.desired_force), "be a number, or null")
     if not isinstance(config.gravity_compensation, bool):
         raise refused("scene.gravity_compensation", config.gravity_compensation, "be true or false")
     world = World(step=config.step, gravity=config.gravity, perturbation=config.perturbation)
@@ -90,39 +91,29 @@ def scene(config: Config, noise: np.random.Generator | None = None) -> World:
     return world
 
 
-BLOCKS: dict[str, dict[str, int]] = {
-    "elastic": {"stiffness": 1, "rest_length": 1, "damping": 1, "to": 3},
-    "wall": {"point": 3, "normal": 3, "stiffness": 1, "damping": 1},
-    "pushes": {"force": 3, "start": 1, "duration": 1, "link": 0, "point": 3},
-    "payload": {"mass": 1, "com": 3},
-    "box": {"size": 3, "position": 3, "mass": 1, "friction": 1},
-    "sensor": {field.name: 1 for field in fields(Sensor)},
+BLOCKS: dict[str, dict[str, str]] = {
+    "elastic": {"stiffness": NUMBER, "rest_length": NUMBER, "damping": NUMBER, "to": PLACE},
+    "wall": {"point": VECTOR, "normal": VECTOR, "stiffness": NUMBER, "damping": NUMBER},
+    "pushes": {"force": VECTOR, "start": NUMBER, "duration": NUMBER, "link": NAME, "point": VECTOR},
+    "payload": {"mass": NUMBER, "com": VECTOR},
+    "box": {"size": VECTOR, "position": VECTOR, "mass": NUMBER, "friction": NUMBER},
+    "sensor": {field.name: NUMBER for field in fields(Sensor)},
 }
-"""Keys of the blocks that may be given, one or a list of them, and how many numbers each holds (0: a name)."""
+"""Keys of the blocks that may be given, one or a list of them, and what each holds."""
 NEEDED = {"elastic": ("stiffness", "rest_length"), "wall": ("point", "normal", "stiffness"), "payload": ("mass",),
           "box": ("size", "position"),
           "pushes": ("force", "start", "duration"), "sensor": ()}  # fmt: skip
+SERVO = {"frequency": NUMBER, "ik_gain": NUMBER, "rest_gain": NUMBER}
 
 
 def _blocks(config: Config, name: str) -> list[dict[str, Any]]:
     """What the scene gives under a name. Raises InputError with key, value and what is allowed."""
     given = config.get(name) or []
-    blocks = given if isinstance(given, list) else [given]
-    for number, block in enumerate(blocks):
-        where = f"scene.{name}.{number}" if isinstance(given, list) else f"scene.{name}"
-        if not isinstance(block, dict):
-            raise refused(where, block, f"have {', '.join(BLOCKS[name])}")
-        if unknown := [key for key in block if key not in BLOCKS[name]]:
-            raise InputError(f"unknown key '{where}.{unknown[0]}': {nearest(unknown[0], BLOCKS[name])}")
-        for key in (*NEEDED[name], *block):
-            value, length = block.get(key), BLOCKS[name][key]
-            fits = _vector(value, 3) if length == 3 else _vector([value], 1) if length == 1 else isinstance(value, str)
-            if not fits and not (key == "to" and value == "leader"):
-                kind = {0: "a name", 1: "a number", 3: "three numbers"}[length] + (", or leader" if key == "to" else "")
-                raise refused(f"{where}.{key}", value, f"be {kind}")
-    if len(blocks) > 1 and name in ("payload", "sensor", "box"):
-        raise InputError(f"scene.{name} is given {len(blocks)} times; it must be one")
-    return [dict(block) for block in blocks]
+    if not isinstance(given, list):
+        return [checked(given, f"scene.{name}", BLOCKS[name], NEEDED[name])]
+    if len(given) > 1 and name in ("payload", "sensor", "box"):
+        raise InputError(f"scene.{name} is given {len(given)} times; it must be one")
+    return [checked(block, f"scene.{name}.{k}", BLOCKS[name], NEEDED[name]) for k, block in enumerate(given)]
 
 
 def loaded(arm: Arm, payload: Mapping[str, Any] | None = None) -> Arm:
@@ -162,10 +153,10 @@ def start(config: Config, path: Path) -> Array:
     Raises InputError that names the point where the path, displaced by the offset, leaves the arm's reach.
     """
     arm, found, first = config.arm, config.start, None
-    if not _vector(config.offset):
+    if not vector(config.offset):
         raise refused("scene.offset", config.offset, "be three numbers")
     offset = np.array(config.offset, dtype=float)
-    if found is not None and not _vector(found, arm.dof):
+    if found is not None and not vector(found, arm.dof):
         raise refused("scene.start", found, f"be {arm.dof} joint angles, or null")
     for time in np.linspace(0.0, config.duration, CHECKED):
         place = path(time).position + offset
