@@ -76,6 +76,8 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
     search = [f"hydra.searchpath=[{in_quotes(f'file://{Path(extra_dir).resolve()}')}]"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
     understood(overrides)
+    if extra_dir:
+        own_keys(overrides, extra_dir)  # each file is looked at
     try:
         if added:
             raw = _compose(chapter, [*added, *search])
@@ -173,7 +175,8 @@ def read_config(path: Path) -> dict[str, Any]:
 
     try:
         read_yaml(path)  # refuses aliases that explode before OmegaConf writes them out
-        content: Any = OmegaConf.to_container(OmegaConf.create(path.read_text("utf-8")), resolve=False)
+        _refuse_odd_numbers(path, text := path.read_text("utf-8"))
+        content: Any = OmegaConf.to_container(OmegaConf.create(text), resolve=False)
     except AssertionError:
         content = None
     except UnicodeDecodeError as error:
@@ -184,6 +187,26 @@ def read_config(path: Path) -> dict[str, Any]:
     if not isinstance(content, dict) or not content or not all(isinstance(key, str) for key in content):
         raise InputError(f"{path} holds no keys: it must consist of lines such as 'key: value'")
     return content
+
+
+def _refuse_odd_numbers(path: Path, text: str) -> None:
+    """Refuse what YAML 1.1 takes for octal or for minutes and seconds, and a reader for another number or a text."""
+    import yaml
+
+    for event in yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
+        if not (isinstance(event, yaml.ScalarEvent) and event.implicit[0]):
+            continue
+        octal = re.fullmatch(r"[-+]?0[0-7]+", word := event.value)
+        if octal or re.fullmatch(r"[-+]?\d+(:[0-5]?\d)+(\.\d*)?", word):
+            value = yaml.safe_load(word)
+            if octal and value == int(word):
+                continue
+            ways = f"{int(word)} or {value}" if octal else value
+            line = event.start_mark.line + 1  # type: ignore[union-attr]
+            raise InputError(
+                f"{path}: line {line}: YAML takes {word} for {value}; write {ways}, or '{word}' "
+                "in quotes where it is a text"
+            )
 
 
 def offer(chapter: str) -> None:
@@ -310,10 +333,9 @@ def check_settings(composed: Mapping[str, Any]) -> None:
     if isinstance(figure, list):
         raise refused("figure", figure, "be one figure or table, such as 2.7 or T2.1")
     scene = composed.get("scene")
-    if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]{,59}", name := str(scene.get("name"))):
-        raise InputError(
-            f"scene.name = {name[:80]} is not allowed: it names a folder; use up to {LONGEST} letters, digits, '_', '-'"
-        )
+    if isinstance(scene, Mapping) and not re.fullmatch(r"\w[\w.-]{,59}", name := str(scene.get("name") or "")):
+        must = f"name a folder: use up to {LONGEST} letters, digits, '_', '-'"
+        raise refused("scene.name", name[:80] or "null", must)
     check_engine(composed["engine"])
     timeout = composed["case_timeout"]
     if timeout is not None and not (is_number(timeout) and 0 < timeout < math.inf):

@@ -31,6 +31,7 @@ from dexrepro.checks import (
     differences,
     leaves,
     same,
+    value_at,
 )
 from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block
 from dexrepro.control.contract import KINDS, takes
@@ -410,7 +411,14 @@ def check_own(values: Mapping[str, Any]) -> None:
                 raise InputError(f"{text}: '{name}' is a module already ({file}); rename {hidden[0]}")
             names = [key for key, thing in vars(module).items() if getattr(thing, "__module__", None) == name]
             raise InputError(f"{text}: {file} has no '{last}'; {nearest(last, names)}")
-        law = getattr(module, last)
+        law, where = getattr(module, last), key.rpartition(".")[0]
+        block = value_at(values, where) or {}
+        parameters = inspect.signature(law).parameters if inspect.isclass(law) or inspect.isfunction(law) else {}
+        for part in parameters.keys() & block.keys():
+            wanted, value = parameters[part].annotation, block[part]
+            wrong = _NO_NUMBER.get(getattr(wanted, "__name__", wanted))
+            if wrong and isinstance(value, wrong) and value != parameters[part].default:
+                raise refused(f"{where}.{part}", "null" if value is None else repr(value), "be a number")
         if not inspect.isclass(law) or (kind := getattr(law, "kind", None)) not in KINDS:
             continue
         for method, given in {
@@ -421,6 +429,8 @@ def check_own(values: Mapping[str, Any]) -> None:
                 raise InputError(f"{text} is no law of kind '{kind}': it must have {method}(self, {', '.join(given)})")
 
 
+_NO_NUMBER = {"float": str | list | None, "int": str | list | None, "Real": str | None}
+"""What a parameter of a law cannot be, by its annotation."""
 _imported: dict[Path, str] = {}
 """Files of the user's modules as this process last read them."""
 

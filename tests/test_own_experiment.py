@@ -216,3 +216,17 @@ def test_a_claim_that_is_there_twice_is_named(mine: Command) -> None:
     path.write_text(f"{path.read_text()}\nCLAIMS = 2 * tuple(CLAIMS)\n")
     status, text = mine("list --experiments more chapter=lab")
     assert (status, "lab.01 names more than one claim" in text) == (2, True), text
+
+
+@pytest.mark.parametrize(("written", "instead"), [("010", "10 or 8"), ("1:30", "90"), ("007", ""), ('"010"', "")])
+def test_what_yaml_takes_for_another_number_is_refused_with_its_line(mine: Command, written: str, instead: str) -> None:
+    path = Path("more/lab/fade/config.yaml")
+    path.write_text(path.read_text() + f"more: {written}\n")
+    status, text = mine("run --experiments more chapter=lab only=fade case=plain workers=1")
+    if instead:
+        line = path.read_text().count("\n")
+        assert status == 2
+        assert f"lab/fade/config.yaml: line {line}: YAML takes {written} for" in text
+        assert f"; write {instead}, or '{written}' in quotes where it is a text" in text
+    else:
+        assert status == 0, text

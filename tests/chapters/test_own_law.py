@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from contextlib import nullcontext
 from pathlib import Path
@@ -220,6 +221,13 @@ def test_a_law_that_is_not_there_or_cannot_be_called_gets_one_sentence(
         place.write_text(OWN.replace(*change, 1))
     with pytest.raises(InputError, match=sentence) if sentence else nullcontext():
         check_own({"law": {"_target_": target}})
+
+
+@pytest.mark.parametrize(("value", "shown"), [("thirty", "'thirty'"), ([1], "[1]"), (None, "null")])
+def test_what_stands_where_a_law_wants_a_number_is_named(value: Any, shown: str) -> None:
+    law = {"_target_": "dexrepro.control.computed_torque.ComputedTorque", "frequency": value}
+    with pytest.raises(InputError, match=re.escape(f"cases.a.frequency = {shown} is not allowed: it must be a number")):
+        check_own({"cases": {"a": law}})
 
 
 def test_a_law_that_forgot_its_kind_hears_that_it_was_taken_for_a_plain_one() -> None:

@@ -203,7 +203,7 @@ FIXED = "{_target_: dexrepro.control.holding.FixedDistance, dt: 1, displacement:
             "scene law Fraction must declare its kind, one of joint, end_p",
         ),
         ("law", "null", "scene.law = null is not allowed: name a law, or cases that each name one"),
-        ("name", "n" * 61, "scene.name = n.* is not allowed: it names a folder; use up to 60 letters"),
+        ("name", "n" * 61, "scene.name = n.* is not allowed: it must name a folder: use up to 60 letters"),
         ("start", "[0.1]", r"scene.start = \[0.1\] is not allowed: it must be 2 joint angles"),
         ("start", "5", "scene.start = 5 is not allowed: it must be 2 joint angles"),
         ("offset", "[0,0]", r"scene.offset = \[0, 0\] is not allowed: it must be three numbers"),
@@ -266,6 +266,9 @@ def test_folders_and_files_have_the_names_that_people_give_them(
         ("leader: 3", "scene.leader = 3 is not allowed: it must hold keys with values"),
         ("# @package _global_\nduration: 3", "sets 'duration' beside the scene: leave out its line '# @pack"),
         ("scene: {duration: 3}", "unknown key 'scene.scene': what is below 'scene:' in the file stands there without"),
+        ("name: null", "scene.name = null is not allowed: it must name a folder"),
+        ("leader: {line: {period: 010}}", "squeeze.yaml: line 1: YAML takes 010 for 8; write 10 or 8, or '010' in"),
+        ("duration: 1\nstep: 1:30", "squeeze.yaml: line 2: YAML takes 1:30 for 90; write 90, or '1:30' in quotes"),
         ("duration: 0,5", "scene.duration = '0,5' is not allowed: it must be a number"),
         ("duration: [1, 2]", "scene.duration = [1, 2] is not allowed: it must be a number"),
         ("duration: 1e30", "scene.duration = 1e+30 is not allowed: it must be 10000 s at most, 10000000 steps of "
