@@ -135,6 +135,7 @@ class _Tree:
             if not Path(folder).expanduser().is_dir():
                 raise ValueError(f"packages.{name} = {folder} is not allowed: there is no such folder")
         for name, node in _by_name(robot, "joint").items():
+            node.set("type", node.get("type", "").strip().lower())
             for role in ("parent", "child"):
                 if not (link := _link(node, role)):
                     raise ValueError(f"joint '{name}' has no {role}; it needs <{role} link=\"...\"/>")
@@ -196,14 +197,18 @@ class _Tree:
     def _check(self, chain: Sequence[xml.Element], moving: set[str]) -> None:
         """Refuse joints that no arm can have."""
         for node in chain:
-            if node.get("type") not in TURNING:
+            if (kind := node.get("type")) not in TURNING:
+                ways = f"root: {_link(node, 'child')} begins the arm behind it"
+                if node is chain[-1]:
+                    ways = f"end the arm before it, at {_link(node, 'parent')}"
                 raise ValueError(
-                    f"joint '{_name(node)}' is {node.get('type', 'of no type')}; only revolute, continuous and fixed "
-                    f"joints can move an arm (root: {_link(node, 'child')} begins the arm behind it)"
+                    f"joint '{_name(node)}' is {kind or 'of no type'}; only revolute, continuous and fixed joints can "
+                    "move an arm" + (f" ({ways})" if len(chain) > 1 else "")
                 )
             if (mimic := node.find("mimic")) is not None:
+                followed = f"joint '{mimic.get('joint')}'" if mimic.get("joint") else "a joint that it does not name"
                 raise ValueError(
-                    f"joint '{_name(node)}' follows joint '{mimic.get('joint')}' (mimic), but an arm's joints are "
+                    f"joint '{_name(node)}' follows {followed} (mimic), but an arm's joints are "
                     f"free; end the arm before it, at {_link(node, 'parent')}"
                 )
         names = set(map(_name, chain))
@@ -419,6 +424,11 @@ def _floats(node: xml.Element | None, attribute: str, default: str) -> tuple[flo
 
 def _pose(node: xml.Element) -> Pose:
     origin = node.find("origin")
+    if origin is not None and "quat_xyzw" in origin.attrib:
+        turn = Rotation.from_quat(_floats(origin, "quat_xyzw", "0 0 0 1")).as_euler("xyz")
+        raise ValueError(
+            f'{_place(origin, "quat_xyzw")} is not read; write rpy="{" ".join(f"{x:.9g}" for x in turn)}" in its place'
+        )
     return Pose(_floats(origin, "xyz", "0 0 0"), _floats(origin, "rpy", "0 0 0"))  # type: ignore[arg-type]
 
 

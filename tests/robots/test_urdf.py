@@ -69,6 +69,12 @@ def test_a_base_has_three_or_six_numbers(path: Path, base: Any) -> None:
         from_urdf(str(path), "tip", base=base)
 
 
+def test_the_type_of_a_joint_is_read_in_any_case(path: Path) -> None:
+    arm = from_urdf(str(path), "tip")
+    path.write_text(URDF.replace('"revolute"', '" Revolute"').replace('"fixed"', '"FIXED"'))
+    assert from_urdf(str(path), "tip") == arm
+
+
 def test_a_link_may_be_called_by_a_number_as_yaml_reads_it(path: Path) -> None:
     arm = from_urdf(str(path), "tip", root="base")
     path.write_text(URDF.replace('"tip"', '"5"').replace('"base"', '"1"'))
@@ -185,6 +191,9 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
         (('child link="eye"', 'child link="two"'), "link 'two' hangs on two joints, 'plate' and 'camera'"),
         (("continuous", "prismatic"), "joint 'yaw' is prismatic; .*root: one begins the arm behind it"),
         (('"stand" type="fixed"', '"stand" type="floating"'), "joint 'stand' is floating; .*root: base begins"),
+        (('"pitch" type="revolute"', '"pitch" type=" Prismatic "'), "joint 'pitch' is prismatic; .*before it, at two"),
+        ((LIMIT, LIMIT + "<mimic/>"), "joint 'pitch' follows a joint that it does not name .mimic.*before it, at two"),
+        (('rpy="0 0 0.5"', 'quat_xyzw="0 0 0 2"'), '<origin quat_xyzw="0 0 0 2"> is not read; write rpy="0 0 0" in'),
         (('value="0.2"', 'value="-0.2"'), "link 'eye' has the mass -0.2 kg"),
         (('value="2"', 'value="heavy"'), '<mass value="heavy"> does not hold one number'),
         (('value="2"', 'value="nan"'), '<mass value="nan"> does not hold one number'),
