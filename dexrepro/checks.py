@@ -116,6 +116,17 @@ def check_files(config: Mapping[str, Any], shipped: Mapping[str, Any], where: st
                 raise refused(dotted, name, "be a file that can be read again, no pipe or device")
 
 
+def check_unread(
+    keys: Iterable[str], cases: Iterable[Mapping[str, Any]], shipped: Mapping[str, Any], where: str
+) -> None:
+    """Refuse what is said of files where no case names one. keys: of the changed values."""
+    files = [key for key, book in leaves(shipped) if book is None and key.rpartition(".")[2] in FILES]
+    said = [key for key in keys if key in ("unit", "time_unit", "duplicates", "encoding")]
+    if said and files and not any(value_at(values, key) for values in cases for key in files):
+        named = " or ".join(f"{where}.{key}" for key in files)
+        raise InputError(f"{where}.{said[0]} has no effect: no file is named by {named}")
+
+
 _A_LINK = ("lengths", "masses", "inertias", "centres")  # one value a link each
 _VECTOR = re.compile(r"(^|_)(base|centre|place|offset|force|gravity|semi_axes|position|pose|start|goal)$")
 

@@ -27,6 +27,7 @@ from dexrepro.checks import (
     check_lengths,
     check_sizes,
     check_types,
+    check_unread,
     check_words,
     differences,
     leaves,
@@ -237,6 +238,8 @@ def _differs(
         check_types(values, book.get(case, next(iter(book.values()))), name)
         check_lengths(values, book.get(case, next(iter(book.values()))), name)
         check_files(values, book.get(case, next(iter(book.values()))), name)
+    changed = [key for key, value in config[name].items() if not same(value, shipped[name].get(key))]
+    check_unread(changed, cases.values(), next(iter(book.values())), name)
     own = {_key(text): text for text in differences(block, resolved_block(shipped, name))}
     listed = differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
     reached: dict[str, str] = {}  # what changes in a case, by its key there; the first case that has it
@@ -288,7 +291,9 @@ def writable(results: Path) -> Path:
         (results / ".cache").mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=results / ".cache").close()
     except OSError as error:
-        raise InputError(f"results = {results} is not allowed: cannot write there ({error.strerror})") from error
+        dead = [path for path in (results, *results.parents) if path.is_symlink() and not path.exists()]
+        reason = f"the link {dead[0]} leads nowhere" if dead else error.strerror
+        raise InputError(f"results = {results} is not allowed: cannot write there ({reason})") from error
     return results
 
 

@@ -17,6 +17,7 @@ from dexrepro.chapters.chapter6.planar_skill import experiment as planar_skill
 from dexrepro.chapters.chapter7 import skills
 from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
 from dexrepro.errors import InputError
+from dexrepro.plan import plan_chapter
 
 
 def configured(chapter: str, experiment: str, name: str, *overrides: str) -> Any:
@@ -44,6 +45,15 @@ def test_a_recorded_letter_keeps_its_ends_and_its_shape() -> None:
     assert first.start == pytest.approx([2, 0], abs=1e-9)
     assert first.goal == pytest.approx([2, 4], abs=1e-9)
     assert np.ptp(first.position[:, 0]) == pytest.approx(2.0, abs=0.05)
+
+
+def test_what_is_said_of_files_is_refused_where_none_is_named() -> None:
+    said = "letter_accuracy.unit has no effect: no file is named by letter_accuracy.demonstrations"
+    with pytest.raises(InputError, match=said):
+        plan_chapter("5", ["only=letter_accuracy", "letter_accuracy.unit=mm"], write=False)
+    plan_chapter("5", ["only=letter_accuracy", "shared.files.unit=mm"], write=False)  # for the others of the chapter
+    named = "+letter_accuracy.cases.mine={demonstrations: letter.csv}"
+    plan_chapter("5", ["only=letter_accuracy", "letter_accuracy.unit=mm", named], write=False)
 
 
 def test_only_the_crossings_with_files_are_recorded() -> None:

@@ -219,6 +219,15 @@ def simulate(config, rng):
 """
 
 
+def test_a_link_to_nowhere_is_named_as_one(toy: Path, command: Command) -> None:
+    Path("dead").symlink_to("nowhere")
+    for name in ("dead", "dead/deeper"):
+        status, said = command(f"run only=decay workers=1 results={name}")
+        sentence = f"results = {name} is not allowed: cannot write there (the link dead leads nowhere)"
+        assert (status, sentence in said) == (2, True), said
+    assert Path("dead").is_symlink()
+
+
 @pytest.mark.parametrize("where", ["results/.cache", "results", "results/chapter90"])
 def test_a_full_or_missing_disk_is_named(toy_result: Path, toy_book: Path, command: Command, where: str) -> None:
     """The disk is full for the process that simulates and stores, however that began."""
