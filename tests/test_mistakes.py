@@ -43,10 +43,10 @@ def result(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("decay.start=false", "decay.start = False is not allowed: it must be a number"),
         ("decay.gains=[1,two]", "decay.gains.1 = 'two' is not allowed: it must be a number"),
         (
-            "decay.duration=1e300",
-            "decay.duration = 1e+300 is not allowed: it must be 100000 s at most, 10000000 steps of",
+            "decay.duration=1e30",
+            "decay.duration = 1e+30 is not allowed: it must be 100000 s at most, 10000000 steps of",
         ),
-        ("decay.pause=1e300", "decay.pause = 1e+300 is not allowed: it must be 100000 s at most"),
+        ("decay.pause=1e30", "decay.pause = 1e+30 is not allowed: it must be 100000 s at most"),
         (
             "decay.step=1e-30",
             "decay.duration = 2 is not allowed: it must be 1e-23 s at most, 10000000 steps of decay.step",
