@@ -401,7 +401,9 @@ def test_what_is_wrong_in_a_block_names_key_value_and_what_is_allowed(word: str,
         ),
         ({"points": 5}, "scene.leader.points: give two rows or more"),
         ({"csv": {"unit": "mm"}}, "scene.leader.csv.file = null is not allowed: it must be a name"),
-        ({"csv": {"file": "a.csv", "encoding": 1252}}, "scene.leader.csv.encoding = 1252 is not allowed: it must be a"),
+        ({"csv": {"file": "a.csv", "encoding": 1252}}, "scene.leader.csv: cannot read 'a.csv'"),
+        ({"csv": {"file": "a.csv", "encoding": [5]}}, "scene.leader.csv: encoding = [5] is not allowed: it must be a"),
+        ({"csv": {"file": "a.csv", "units": "mm"}}, "unknown key 'scene.leader.csv.units': did you mean 'unit'"),
     ],
 )
 def test_what_is_wrong_in_the_leaders_path_names_key_value_and_what_is_allowed(leader: Any, sentence: str) -> None:

@@ -15,10 +15,12 @@ def vector(value: Any, length: int = 3) -> bool:
 
 
 NAME, NUMBER, VECTOR, PLACE = "a name", "a number", "three numbers", "three numbers, or leader"
+ANY = "anything"  # who takes it says what is wrong
 FITS: dict[str, Callable[[Any], bool]] = {
     NAME: lambda value: isinstance(value, str),
     NUMBER: is_number,
     VECTOR: vector,
+    ANY: lambda _: True,
     PLACE: lambda value: value == "leader" or vector(value),
 }
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from dexrepro.chapters.own.blocks import NAME, NUMBER, VECTOR, checked, vector
+from dexrepro.chapters.own.blocks import ANY, NAME, NUMBER, VECTOR, checked, vector
 from dexrepro.control.motion import Path, circle, held, line
 from dexrepro.errors import InputError, refused
 from dexrepro.experiment import Config
@@ -59,6 +59,6 @@ KINDS: dict[str, Callable[[Any], Path]] = {
 KEYS = {
     "line": {"start": VECTOR, "end": VECTOR, "period": NUMBER},
     "circle": {"centre": VECTOR, "radius": NUMBER, "period": NUMBER},
-    "csv": {"file": NAME, **{field.name: NAME for field in fields(Format)}},
+    "csv": {"file": NAME, **{field.name: ANY for field in fields(Format)}},
 }
 """What each of them holds, all of it needed but for what is said of a file."""
