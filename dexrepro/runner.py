@@ -53,13 +53,14 @@ class Outcome:
     """What a run did: result folders and failures as sentences, by name; in what experiments differ from the book.
 
     unusable: cases that a law of the user's ended by giving no number, as sentences; there is a result up to then.
-    tracebacks: files that say more of a failure, by name.
+    tracebacks: files that say more of a failure, by name. assembled: experiments whose result is new.
     """
 
     folders: dict[str, Path] = field(default_factory=dict)
     failures: dict[str, str] = field(default_factory=dict)
     unusable: dict[str, str] = field(default_factory=dict)
     tracebacks: dict[str, Path] = field(default_factory=dict)
+    assembled: list[str] = field(default_factory=list)
     differs: dict[str, list[str]] = field(default_factory=dict)
 
     @property
@@ -346,6 +347,7 @@ class _Run:
         """Done, unless the cache has lost cases meanwhile (of which the sizes were right, the bytes are not)."""
         if not lost:
             self.outcome.folders[plan.experiment] = plan.folder
+            self.outcome.assembled.append(plan.experiment)
             self.progress.assembled(plan.experiment)
         elif plan.experiment in self.repeated:
             self.outcome.failures[plan.experiment] = f"{Path(lost[0].folder).parent} does not keep what is written"

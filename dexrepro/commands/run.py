@@ -146,8 +146,8 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
         _print_summary(results, outcome.differs, skipped)
     for text in dict.fromkeys(text for result in results.values() for text in result.warnings):
         warn(f"warning: {text}")
-    for name, result in results.items():
-        if left := _undrawn(name, result):
+    for name in outcome.assembled:
+        if left := _undrawn(name, results[name]):
             warn(f"warning: {name}: draw in figures.py made no {', '.join(left)}")
     return outcome
 
