@@ -34,10 +34,8 @@ def by_name(files: Mapping[Any, Any] | None, known: Iterable[Any]) -> dict[str, 
 
 def corners(files: str | Sequence[str], config: Config, key: str) -> list[Array]:
     """Corners (n, 2) [cm] of polygons, one a file. Raises InputError, which names the key, where one cannot be used."""
-    patterns = [files] if isinstance(files, str) else list(files)
-    names = [name for pattern in patterns for name in matching(pattern) or [pattern]]
     try:
         style = Format(unit=config.unit, encoding=config.encoding)
-        return [100 * read_corners(name, style, "cm") for name in names]
+        return [100 * read_corners(name, style, "cm") for name in matching(files)]
     except ValueError as error:
         raise InputError(f"{key}: {error}") from error

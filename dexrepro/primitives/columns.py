@@ -1,0 +1,226 @@
+"""Names and units of the columns of a table, as the lines before its rows spell them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from dexrepro.primitives.tables import COMMENT, SHOWN, Table, entries, is_entry, mark_in, numbers_in
+
+LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
+TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
+SPELLINGS = {"inch": "in inches", "m": "meters metres", "cm": "centimeters centimetres", "min": "minutes",
+             "mm": "millimeters millimetres", "s": "sec secs seconds", "ms": "msec milliseconds millis",
+             "us": "µs μs usec microseconds micros", "ns": "nsec nsecs nanoseconds nanos"}  # fmt: skip
+SPELT = {word: unit for unit, words in SPELLINGS.items() for word in words.split()}
+ANGLES = {"deg", "degree", "degrees", "rad", "radian", "radians"}
+RELATIVE = {"norm", "normalised", "normalized"}
+OTHER_TIMES = {"hour", "hours", "hrs", "day", "days"}
+OTHER_LENGTHS = {"um", "µm", "μm", "micrometers", "micrometres", "microns", "dm", "km", "ft", "feet"}
+OTHERS = {*ANGLES, *RELATIVE, *OTHER_LENGTHS, "px", "pixel", "pixels", "mps"}
+NO_LENGTHS = {*ANGLES, *TIMES, "mps", "hz", "n", "v", "volts"}
+CONVERTED = {*OTHER_LENGTHS, *OTHER_TIMES, "h", "hr", "d", "nm", "frame", "frames"}  # by hand
+UNITS = {"", "-", *LENGTHS, *TIMES, *SPELT, *OTHERS}  # at the end of a name, or in a row of units
+SAID = re.compile(r"(?:\bin|\bunits?)\W+(?:are|is)?\W*([a-zµμ]+)\b|[\[(]([a-zµμ]+)[\])]")  # units in words about a file
+QUANTITIES = {  # by the key that sets the unit: which wanted column tells it, its plural, units, and words of others
+    "time_unit": (0, "times", TIMES, OTHER_TIMES),
+    "unit": (1, "lengths", LENGTHS, OTHERS),
+}
+NAMES = {  # of a wanted column: its plain ones, and those that count where no column has one
+    "time": (
+        {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}, {"datetime", "elapsed"}),
+    **{axis: ({axis}, {f"p{axis}", f"pos{axis}", f"{axis}pos"}) for axis in "xyz"},
+}  # fmt: skip
+WHOLE, NANO = {"sec", "secs", "seconds"}, {"nanosec", "nanosecs", "nsec", "nsecs", "nanoseconds"}  # of one stamp
+PLACE = {"position", "pos"}
+NO_PLACE = {"orientation", "rotation", "rot", "angular", "angle", "euler", "quaternion", "quat", "q", "r", "twist",
+            "linear", "velocity", "vel", "v", "u", "w", "omega", "speed", "dot", "ddot", "d", "dd", "delta", "diff",
+            "acceleration", "accel", "acc", "a", "jerk", "gyro", "gyroscope", "mag", "magnetometer", "force", "f",
+            "torque", "wrench", "moment", "error", "err", "e", "std", "var", "cov", "covariance", "seq"}  # fmt: skip
+NAME = re.compile(  # neither a number nor prose
+    r"(?!(in|of|for|at|per|the|over|from|versus|and|und)\b|.*\b(is|are|by|to)\b)[^\W\d]", re.IGNORECASE
+)
+BESIDE = (  # what stands in a header beside the names, and what these are parted by without it
+    (re.compile(r"^([^:=]*[:=]|rem\b|[^\w\s\[(\"']+)\s+", re.IGNORECASE), ""),  # "columns: t x y", "REM t x y", "! t x"
+    (re.compile(r"\s(#|//).*"), ""),
+    (re.compile(r",?\s+(and|und)\s+"), ", "),
+)
+LONGEST = 300  # letters of a header in a sentence
+
+
+def words_in(name: str) -> list[str]:
+    """The words of a column's name in small letters, without its unit; posX are two."""
+    name = re.sub("(?<=[a-z])(?=[A-Z])", " ", re.sub(r"[\[(].*", "", name))
+    return [word for word in re.split(r"[\W_]+", name.lower()) if word]
+
+
+def unit_in(name: str) -> str:
+    """The unit in a column's name: in brackets, or the last word behind the first that is one; empty where none is."""
+    if bracket := re.search(r"[\[(]([^\])]*)", name):
+        return re.sub(r"^in\s+", "", bracket[1].strip())
+    first, *rest = words_in(name) or [""]
+    found = next((word for word in reversed(rest) if word in UNITS - NAMES["time"][0]), "")
+    return found or (first if rest and first in OTHERS else "")
+
+
+def ranked(wanted: str, names: Sequence[str]) -> list[tuple[bool, bool, bool, bool, int]]:
+    """The columns that have the wanted word, first those that have no other than a unit, a place's before others."""
+    result, (plain, often) = [], NAMES[wanted]
+    for column, name in enumerate(names):
+        words = {*words_in(name)}
+        if words & (plain | often) and not words & NO_PLACE:
+            more = words - plain - often - PLACE - UNITS | words & {"min"}
+            result.append((not words & plain, bool(more), not PLACE & words, len(words) > 1, column))
+    return sorted(result)
+
+
+def column_of(wanted: str, names: Sequence[str]) -> int:
+    """Which of the names is the wanted column, the first of those ranked. Refuses several of the same rank."""
+    best = ranked(wanted, names)
+    first, *others = (column for *rank, column in best if rank == [*best[0][:-1]])
+    nano = [column for column, name in enumerate(names) if wanted == "time" and NANO & {*words_in(name)}]
+    whole = [column for column in (first, *others) if WHOLE & {*words_in(names[column])}]
+    one, other = (whole[0], nano[0]) if nano and whole else (first, *others, first)[:2]
+    both = f"{names[one]} and {names[other]} (columns {one + 1} and {other + 1})"
+    if nano and whole:
+        raise ValueError(f"its time is split into {both}; give it in one column, 1e-9 times the nanoseconds added")
+    if others:
+        raise ValueError(f"its columns {both} could both be {wanted}; rename one")
+    return first
+
+
+def _fields(line: str) -> list[str]:
+    """Entries of a header, whatever parts them; a unit in brackets stays with its name."""
+    line = re.sub(r"(?<=[^\s\])])\s+([\[(])", r"\1", line.strip())
+    words = re.findall(r"""(?:"[^"]*"|[\[(][^\])]*[\])]|\S)+""", line)
+    row = entries(line, mark) if (mark := mark_in(line)) else words
+    return [entry.strip(" \"'") for entry in row]
+
+
+class Header:
+    """What the lines before the rows of a table say of its columns; the table is told where the wanted ones are.
+
+    names: of all columns; units: of the wanted ones, as spelt there. Raises ValueError with half a sentence where they
+    leave a doubt.
+    """
+
+    def __init__(self, table: Table) -> None:
+        self.table = table
+        self.names: list[str] = []
+        self.units = [""] * len(table.wanted)
+        self.blanks = False  # whether the names are parted by blanks
+        for k in sorted(table.head[::-1], key=self._is_prose):
+            self._take(k)
+        self._check_named()
+        if len(set(self.units[1:])) > 1:
+            shown = ", ".join(unit or "no unit" for unit in self.units[1:])
+            raise ValueError(f"its header gives {', '.join(table.wanted[1:])} in {shown}; give all in one unit")
+        self._check_shifted()
+
+    def _found(self, names: list[str]) -> int:
+        """How many columns are the wanted ones."""
+        return len({best[0][-1] for wanted in self.table.wanted if (best := ranked(wanted, names))})
+
+    def _names(self, line: str) -> list[str]:
+        """The names in a line; where only so each entry has one, without what stands beside them."""
+        line = re.sub(r"^[\[({]([^\[\](){}]*)[\])}]$", r"\1", COMMENT.sub("", line).strip())
+        names, widths = _fields(line), self.table.widths
+        for pattern, new in BESIDE:
+            if len(names) not in widths and len(fewer := _fields(pattern.sub(new, line))) in widths:
+                names = fewer
+        return names
+
+    def _is_prose(self, k: int) -> bool:
+        """Whether a line is a comment of another number of words than rows have entries."""
+        line = self.table.lines[k]
+        return bool(COMMENT.match(line) and not mark_in(line) and len(self._names(line)) not in self.table.widths)
+
+    def _is_header(self, line: str) -> bool:
+        """Whether a comment names columns, if perhaps not the wanted ones."""
+        names = self._names(line)
+        bare = [len(words_in(name)) == self._found([name]) == 1 for name in names]
+        found = self._found(names) > 1 or any(bare if mark_in(line) else bare[:1])
+        return found and len(names) in self.table.widths and all(map(NAME.match, names))
+
+    def _take(self, k: int) -> None:
+        """Take the columns, or their units, from a line, if it names them."""
+        line, columns = self.table.lines[k], self.table.columns
+        names = self._names(line)
+        units = [name.strip("[]() ") for name in names]
+        known = {unit.lower() for unit in units} <= UNITS
+        if columns is not None:
+            if known and len(units) == len(self.names):  # a row of units above the names
+                self.units = [unit or units[column] for unit, column in zip(self.units, columns, strict=True)]
+        elif known or self._found(names) < len(self.table.wanted):
+            if known or not (COMMENT.match(line) or numbers_in(line)):
+                self.units = units  # perhaps a row of units under the names
+        else:
+            columns = [column_of(name, names) for name in self.table.wanted]
+            under = self.units if len(self.units) == len(names) else [""] * len(names)
+            self.units = [unit_in(names[column]) or under[column] for column in columns]
+            self.names, self.blanks = names, not mark_in(COMMENT.sub("", line))
+            self.table.named_by(k, columns)
+
+    def _check_named(self) -> None:
+        """Refuse a table without rows, or one whose columns have other names than the wanted."""
+        table, wanted = self.table, ", ".join(self.table.wanted)
+        last = table.plain[-1] if table.plain else -1
+        if table.plain and not table.body:
+            parted = f"it has no row of numbers parted by commas, semicolons, tabs or blanks for each of {wanted}"
+            raise ValueError(f"{parted}; line {last + 1} holds '{table.stripped[last][:SHOWN]}'")
+        if table.columns is not None:
+            return
+        if table.plain and numbers_in(table.lines[last]):
+            shown = f"line {last + 1} holds '{table.lines[last].strip()[:SHOWN]}'"
+            raise ValueError(f"{shown}: it must have {wanted}, or name the columns")
+        lines = [table.lines[k] for k in reversed(table.plain or table.head)]
+        if naming := [self._names(line) for line in lines if table.plain or self._is_header(line)]:
+            shown = ", ".join(name or "(no name)" for name in max(naming, key=self._found))[:LONGEST]
+            raise ValueError(f"its columns are {shown}; they must be {wanted}")
+        if len(self.units) != len(table.wanted):
+            self.units = [""] * len(table.wanted)
+
+    def _check_shifted(self) -> None:
+        """Refuse rows in which columns have been shifted, and numbers that count the columns."""
+        table, named = self.table, len(self.names)
+        rows = table.first_rows(table.separator)
+        short = self.blanks and max(map(len, rows), default=named) < named
+        for k, row in zip(table.body, rows if named else (), strict=False):
+            note = not table.separator and not all(map(is_entry, row[named - 1 : named + 1]))  # of several words
+            if short or (len(row) > named and not note):
+                shown = f"line {k + 1} has {len(row)} entries, but the header names {named} columns"
+                comma = ", or part them by ; if , is the decimal mark" if table.separator == "," else ""
+                how = " in one word" if self.blanks else comma
+                raise ValueError(f"{shown}, {', '.join(self.names)[:LONGEST]}; name each column{how}")
+        counted = not named and rows and len(rows[0]) > 2 and rows[0] == [*map(str, range(len(rows[0])))]
+        if counted and any("." in entry for row in rows[1:2] for entry in row):
+            wanted = ", ".join(table.wanted)
+            raise ValueError(f"line {table.body[0] + 1} numbers the columns; delete it, or name them {wanted} there")
+
+    def unit(self, key: str, given: str | None, otherwise: str) -> str | None:
+        """The unit of ``unit`` or ``time_unit`` as ``given`` or in the header, None where neither tells it.
+
+        Refuses to go by ``otherwise`` where a line about the file speaks of another one.
+        """
+        column, plural, allowed, others = QUANTITIES[key]
+        said, units = self.units[column].strip("-").lower(), ", ".join(allowed)
+        said = SPELT.get(said, said)
+        for k in self.table.head if not (given or said) else ():
+            for match in SAID.finditer(self.table.lines[k].lower()):
+                word = SPELT.get(match[1] or match[2], match[1] or match[2])
+                if word != otherwise and (word in allowed or word in others):
+                    right = f"set {key}={word}" if word in allowed else f"convert to one of {units} and set {key}="
+                    right = "give positions" if column and word in NO_LENGTHS else right
+                    shown = f"line {k + 1} says '{match[0]}', and no column has a unit"
+                    raise ValueError(f"{shown}; {right} if that is the one of its {plural}, else {key}={otherwise}")
+        no_length = column and (said in NO_LENGTHS or re.search(r"[^\W\d]\s*/", said))
+        by_hand = said in CONVERTED or said[:1].isdigit() or (said in RELATIVE and not given)
+        for wrong, why in (
+            (no_length, ", which is no length; give positions"),
+            (by_hand, f"; convert it to one of {units}"),
+            (said and said not in allowed and not given, f"; set {key}= to {units}"),
+            (given and said in allowed and said != given, f", not in {given}; set {key}={said}"),
+        ):
+            if wrong:
+                raise ValueError(f"its header gives {self.table.wanted[column]} in {said}{why}")
+        return given or said or None
