@@ -24,9 +24,10 @@ from dexrepro.checks import is_number
 from dexrepro.config import baseline_dir, selecting
 from dexrepro.damage import check_result, read_table
 from dexrepro.errors import InputError, one_line
-from dexrepro.plan import Plan, outdated, plan_chapter, select
+from dexrepro.plan import Plan, outdated, plan_chapter
 from dexrepro.pool import BLAS_THREADS
 from dexrepro.runner import run_plans
+from dexrepro.selection import select
 from dexrepro.storage import read_json, require, write_json
 
 PERTURBATIONS = (1e-9, -1e-9)  # rad, or share of the input data's range; one may take the same branch by luck

@@ -16,10 +16,11 @@ import numpy as np
 
 from dexrepro import chapters
 from dexrepro.baselines import Baseline, agrees
+from dexrepro.cache_key import uses_engine
 from dexrepro.claims import NOT_EVALUATED
 from dexrepro.config import baseline_dir, selecting
 from dexrepro.errors import InputError, one_line
-from dexrepro.plan import Plan, plan_chapter, uses_engine
+from dexrepro.plan import Plan, plan_chapter
 from dexrepro.progress import Silent
 from dexrepro.result import flat
 from dexrepro.runner import run_plans

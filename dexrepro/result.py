@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dexrepro import chapters
+from dexrepro.cache_key import presentation
 from dexrepro.checks import leaves, returned, returned_numbers
 from dexrepro.errors import InputError, nearest
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
-from dexrepro.plan import PARTIAL, presentation
+from dexrepro.plan import PARTIAL
 from dexrepro.storage import copy, finite, read_json, read_yaml, whole_folder, write_json
 
 if TYPE_CHECKING:

@@ -19,12 +19,14 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import __version__, chapters
+from dexrepro.cache_key import own_digest
 from dexrepro.case import live, targets, watched
 from dexrepro.case import run as run_case
 from dexrepro.checks import differences
 from dexrepro.errors import COMPLETES, InputError, one_line
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
-from dexrepro.plan import Job, Plan, check_own, import_anew, outdated, own_digest
+from dexrepro.own_code import check_own, import_anew
+from dexrepro.plan import Job, Plan, outdated
 from dexrepro.pool import Failure, Pool, start_method
 from dexrepro.progress import Silent
 from dexrepro.result import CaseEntry, RunEntry, flat, present, redraw

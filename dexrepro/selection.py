@@ -22,8 +22,8 @@ from dexrepro.config import (
     parsed,
 )
 from dexrepro.errors import InputError, existing_folder, folder_named, nearest, refused
+from dexrepro.experiment import Experiment
 from dexrepro.keys import KEYS, SELECTION, TAKEN
-from dexrepro.plan import select
 
 
 class Selection(NamedTuple):
@@ -73,6 +73,31 @@ def _with_claim(claim: str, numbers: list[str]) -> list[str]:
     if owner[claim] not in numbers:
         raise InputError(f"claim = {claim} is of chapter {owner[claim]}, not of {', '.join(numbers)}")
     return [owner[claim]]
+
+
+def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[Experiment]:
+    """The experiments of a chapter named by ``only``, which may name others' too, that make ``figure`` (or table)."""
+    experiments = chapters.load(chapter).experiments
+    names = [experiment.name for experiment in experiments]
+    wanted = names if only is None else [only] if isinstance(only, str) else list(only)
+    everywhere = {name for number in chapters.numbers() for name in chapters.names(number)}
+    for name in wanted:
+        if name not in names and (name not in everywhere or not set(wanted) & set(names)):
+            raise InputError(f"unknown experiment '{name}' in chapter {chapter}: {nearest(str(name), names)}")
+    selected = [experiment for experiment in experiments if experiment.name in wanted]
+    if figure is None:
+        return selected
+    made = [e for e in selected if any(matches(str(figure), i) for i in (*e.figures, *e.tables))]
+    if not made:
+        kind = "tables" if str(figure).startswith("T") else "figures"
+        ids = [identifier for e in selected for identifier in getattr(e, kind)]
+        raise InputError(f"unknown figure '{figure}' in chapter {chapter}: {nearest(str(figure), ids)}")
+    return made
+
+
+def matches(wanted: str, identifier: str) -> bool:
+    """Whether "2.9" or "2.9a" names the figure "2.9a" (a number names all its panels)."""
+    return wanted == identifier or (identifier.startswith(wanted) and identifier[len(wanted) :].isalpha())
 
 
 def listed(value: str) -> list[str]:

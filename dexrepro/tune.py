@@ -26,6 +26,7 @@ from scipy import stats
 
 from dexrepro import chapters
 from dexrepro.arrays import Array
+from dexrepro.cache_key import content_of
 from dexrepro.case import measured, targets
 from dexrepro.checks import is_number, leaves, set_value, value_at
 from dexrepro.config import baseline_dir, compose_chapter, experiment_cases
@@ -33,7 +34,7 @@ from dexrepro.control.contract import KINDS, is_plain
 from dexrepro.errors import InputError, importable, nearest, refused
 from dexrepro.experiment import Metrics
 from dexrepro.physics.engine import default
-from dexrepro.plan import case_values, content_of, lacking, writable
+from dexrepro.plan import case_values, lacking, writable
 from dexrepro.pool import Failure, Pool
 from dexrepro.provenance import provenance
 from dexrepro.selection import chapters_of

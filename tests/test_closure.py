@@ -15,9 +15,10 @@ from pathlib import Path
 import pytest
 from conftest import ROOT, Command
 
-from dexrepro import chapters, closure, plan
+from dexrepro import chapters, closure
+from dexrepro.cache_key import READERS, code_digest, package_digest, presentation
 from dexrepro.case import live, run, targets
-from dexrepro.plan import code_digest, plan_chapter, presentation
+from dexrepro.plan import plan_chapter
 
 BAXTER = "dexrepro.robots.baxter"
 
@@ -57,7 +58,7 @@ def test_what_reads_files_counts_where_a_file_is_named(edited: Callable[[str, st
     values = [{"demonstrations": named, "engine": "pybullet"} for named in (None, "letter.csv")]
     before = [code_digest(experiment, value) for value in values]
     edited("dexrepro.primitives.recorded", "FEWEST = 8", "FEWEST = 9")
-    plan._code_digest.cache_clear()
+    package_digest.cache_clear()
     after = [code_digest(experiment, value) for value in values]
     assert [a == b for a, b in zip(before, after, strict=True)] == [True, False]
 
@@ -139,9 +140,9 @@ def test_every_function_that_runs_is_in_the_hash(
     definition, job = chapters.load(chapter).experiment(experiment), plans[0].jobs[0]
     roots: list[closure.Name] = []
     monkeypatch.setattr(closure, "digest", lambda names, _: roots.extend(names) or "")
-    plan._code_digest.cache_clear()
+    package_digest.cache_clear()
     code_digest(definition, job.config)
-    reached = closure._reached(roots, plan.READERS)
+    reached = closure._reached(roots, READERS)
     seen: set[closure.Name] = set()
 
     def watch(frame, event, argument) -> None:

@@ -9,10 +9,11 @@ from conftest import ROOT
 
 from dexrepro import baselines, cli, crosscheck
 from dexrepro.baselines import Baseline
+from dexrepro.cache_key import uses_engine
 from dexrepro.crosscheck import Comparison, Difference
 from dexrepro.errors import InputError
 from dexrepro.physics import engine
-from dexrepro.plan import plan_chapter, uses_engine
+from dexrepro.plan import plan_chapter
 from dexrepro.study import samples, sampling
 
 ARMS, NONE = "arm_obstacles", "planar_skill"  # experiments of chapter 6 with simulated arms, and without

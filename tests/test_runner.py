@@ -12,9 +12,10 @@ import pytest
 
 import dexrepro
 from dexrepro import cli
+from dexrepro.cache_key import own_digest
 from dexrepro.case import generator
 from dexrepro.errors import InputError
-from dexrepro.plan import own_digest, plan_chapter
+from dexrepro.plan import plan_chapter
 from dexrepro.result import Result
 from dexrepro.runner import KEPT, complete, run_plans
 from dexrepro.storage import read_json

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from dexrepro import chapters, tune
+from dexrepro.cache_key import content_of
 from dexrepro.checks import value_at
 from dexrepro.errors import InputError
-from dexrepro.plan import content_of
 from dexrepro.provenance import provenance
 
 RESULTS = Path("results")

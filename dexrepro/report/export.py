@@ -14,9 +14,9 @@ from matplotlib.text import Text
 
 from dexrepro.errors import refused
 from dexrepro.experiment import Experiment
-from dexrepro.plan import matches
 from dexrepro.report.style import TWO_COLUMNS, file_stem, style
 from dexrepro.result import drawn, recorded
+from dexrepro.selection import matches
 
 FORMATS = ("pdf", "png", "svg")
 SLIDE = 12.0  # inch: a figure as wide as a slide (13.33) with its margins

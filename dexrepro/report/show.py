@@ -14,10 +14,10 @@ from dexrepro.claims import Claim, Erratum, cases_in, filled
 from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
 from dexrepro.damage import check_result
 from dexrepro.errors import InputError, nearest
-from dexrepro.plan import matches
 from dexrepro.provenance import provenance
 from dexrepro.report import equations, parameters, relations, sources, verdicts, words
 from dexrepro.report.listing import chapter_listing
+from dexrepro.selection import matches
 from dexrepro.storage import read_json
 from dexrepro.study import draws, summaries
 

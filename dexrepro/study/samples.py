@@ -12,13 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters
+from dexrepro.cache_key import content_of
 from dexrepro.case import measured
 from dexrepro.claims import Claim, cases_in
 from dexrepro.config import baseline_dir
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Metrics
 from dexrepro.physics.engine import REFERENCE
-from dexrepro.plan import case_values, content_of
+from dexrepro.plan import case_values
 from dexrepro.result import flat, summarise
 from dexrepro.storage import digest_of, finite, opened, write_text
 from dexrepro.study.draws import draw

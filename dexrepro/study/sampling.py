@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import chapters, crosscheck
+from dexrepro.cache_key import uses_engine
 from dexrepro.claims import LOOKS, OPEN, cases_in
 from dexrepro.errors import InputError, nearest
 from dexrepro.physics.engine import REFERENCE
-from dexrepro.plan import matching, uses_engine
+from dexrepro.plan import matching
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.storage import claimed, locked, write_json
 from dexrepro.study import samples

@@ -17,10 +17,10 @@ from dexrepro.config import compose_chapter
 from dexrepro.control.contract import Command, Measured, check, report
 from dexrepro.control.motion import Motion, rest
 from dexrepro.errors import InputError
+from dexrepro.own_code import check_own
 from dexrepro.physics.drive import JointDrive, Limited
 from dexrepro.physics.loop import LawFailed
 from dexrepro.physics.world import World
-from dexrepro.plan import check_own
 from dexrepro.robots.planar import planar
 
 
