@@ -53,6 +53,6 @@ def load(folder: str | Path) -> Result:
 def _text(value: Any) -> str:
     if isinstance(value, list | tuple):
         return "[" + ",".join(map(_text, value)) + "]"
-    from dexrepro.config import in_quotes
+    from dexrepro.overrides import in_quotes
 
     return in_quotes(str(value)) if isinstance(value, str | Path) else str(value)

@@ -21,9 +21,10 @@ from typing import Any
 
 from dexrepro import chapters
 from dexrepro.checks import is_number
-from dexrepro.config import baseline_dir, selecting
+from dexrepro.config import baseline_dir
 from dexrepro.damage import check_result, read_table
 from dexrepro.errors import InputError, one_line
+from dexrepro.overrides import selecting
 from dexrepro.plan import Plan, outdated, plan_chapter
 from dexrepro.pool import BLAS_THREADS
 from dexrepro.runner import run_plans

@@ -57,7 +57,8 @@ def _values(key: str, numbers: Iterable[str], given: dict[str, str], parsed: arg
     experiments = [e for chapter in loaded for e in chapter.experiments if given.get("only", e.name) == e.name]
     if key == "figure":
         return [name for experiment in experiments for name in (*experiment.figures, *experiment.tables)]
-    from dexrepro.config import compose_chapter, experiment_cases
+    from dexrepro.cases import experiment_cases
+    from dexrepro.config import compose_chapter
 
     return [
         case

@@ -1,8 +1,7 @@
-"""From conf/ and the user's overrides to one resolved, checked configuration a case."""
+"""The configuration of a chapter: its files, what Hydra composes of them and of overrides, and its settings."""
 
 from __future__ import annotations
 
-import copy
 import logging
 import math
 import os
@@ -10,24 +9,20 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from dexrepro import chapters
-from dexrepro.checks import check_values, is_number, is_whole, leaves, value_at
+from dexrepro.cases import LONGEST
+from dexrepro.checks import is_number, is_whole
 from dexrepro.disk_cache import cached
 from dexrepro.errors import InputError, nearest, one_line, refused
-from dexrepro.interpolation import inherited, names_of, resolved
+from dexrepro.interpolation import inherited
+from dexrepro.overrides import check_overrides, forced, in_quotes, keys_in, parsed, understood
 from dexrepro.physics.engine import ENGINES, is_installed
 from dexrepro.storage import read_yaml
 
-if TYPE_CHECKING:  # Hydra is imported where it is needed: it takes as long as a whole command may
-    from hydra.core.override_parser.types import Override
-
 SETTINGS = ("only", "case", "figure", "seed", "engine", "results", "workers", "case_timeout", "force", "quiet", "gui")
-LARGEST_SWEEP = 100_000  # jobs
 log = logging.getLogger(__name__)
-CASE = r"[\w+-]+"  # what names a case, and its files
-LONGEST = 60  # letters; with what is written behind and beside it, no name is too long for a disk
 
 
 def config_dir() -> Path:
@@ -88,7 +83,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
     except (HydraException, OmegaConfBaseException) as error:
         cause = error.__cause__ or error
         if (key := getattr(cause, "full_key", None)) and "not in struct" in str(cause):
-            known = _keys(inherited(raw))
+            known = keys_in(inherited(raw))
             raise InputError(f"unknown key '{key}': {nearest(key, known)} (a new one: '+{key}=VALUE')") from error
         if extra_dir and "Cannot merge" in str(cause):
             for path in _own_files(overrides, extra_dir):
@@ -127,13 +122,6 @@ def _plain_settings(overrides: Sequence[str]) -> dict[str, Any] | None:
         word = match[4] and _WORDS.get(match[4].lower(), match[4])
         found[match[1]] = match[2] or (int(match[3]) if match[3] else word)
     return found
-
-
-def forced(overrides: Sequence[str], raw: Mapping[str, Any]) -> list[str]:
-    """Overrides of inherited keys, which the files do not spell out, as Hydra takes them."""
-    keys = set(_keys(raw))
-    return [f"++{text}" if re.match(r"[A-Za-z_]\w*\.", text) and text.partition("=")[0] not in keys
-            and not text.startswith("hydra") else text for text in overrides]  # fmt: skip
 
 
 def as_written(chapter: str) -> dict[str, Any]:
@@ -255,72 +243,6 @@ def _compose(chapter: str, overrides: Sequence[str] = ()) -> dict[str, Any]:
     return OmegaConf.to_container(config, resolve=False)  # type: ignore[return-value]
 
 
-def parsed(text: str) -> Override | None:
-    """What Hydra's grammar makes of a word, None where it is none of its overrides."""
-    from hydra.core.override_parser.overrides_parser import OverridesParser
-    from hydra.errors import HydraException
-
-    try:
-        return OverridesParser.create().parse_override(text)
-    except (HydraException, ValueError, RecursionError):  # the latter for thousands of digits or brackets
-        return None
-
-
-def in_quotes(text: str) -> str:
-    """A text that Hydra's grammar takes as it is."""
-    return "'" + text.replace("'", "\\'") + ("\\'" if text.endswith("\\") else "'")
-
-
-def selecting(results: Path, only: Sequence[str] = ()) -> list[str]:
-    """Overrides that name the folder of the results and the experiments (none: all)."""
-    return [f"results={in_quotes(str(results))}", *([f"only=[{','.join(only)}]"] if only else [])]
-
-
-def understood(overrides: Sequence[str]) -> list[Override]:
-    """Overrides as Hydra reads them. Raises InputError for a word that is none of them or names no key."""
-    found = []
-    for text in overrides:
-        override = parsed(text)
-        if override is None or not override.key_or_group:
-            raise InputError(
-                f"'{text[:200]}' is not an override of the form key=value, such as chapter=2, only=EXPERIMENT or "
-                "figure=2.7"
-            )
-        if override.is_range_sweep():
-            sweep: Any = override.value()
-            count = math.ceil((sweep.stop - sweep.start) / sweep.step) if sweep.step else 0
-            if not 0 < count <= LARGEST_SWEEP:
-                raise InputError(f"'{text}' is not allowed: it makes {max(count, 0)} jobs, {LARGEST_SWEEP} at most")
-        found.append(override)
-    return found
-
-
-def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> None:
-    """Refuse overrides that do not parse or whose key the shipped configuration does not have."""
-    keys = list(_keys(shipped))
-    for override in understood(overrides):
-        key = override.key_or_group
-        if override.is_add() or override.is_force_add() or "/" in key or key.startswith("hydra"):
-            continue
-        if key not in keys:
-            listed = re.sub(r"(\.\d+)(\..*)?$", "", key)
-            if isinstance(value_at(shipped, listed), list):
-                raise InputError(f"'{key}' lies in a list, which is given whole: '{listed}=[…]'")
-            of_case = re.fullmatch(r"(\w+)\.(cases\.\w+)\.(.+)", key)
-            if of_case and {f"{of_case[1]}.{of_case[2]}", f"{of_case[1]}.{of_case[3]}"} <= {*keys}:
-                raise InputError(
-                    f"{of_case[1]}.{of_case[2]} does not set '{of_case[3]}' yet: add it, '+{override.input_line}'"
-                )
-            raise InputError(f"unknown key '{key}': {nearest(key, keys)}")
-
-
-def _keys(node: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
-    for key, value in node.items():
-        yield f"{prefix}{key}"
-        if isinstance(value, Mapping):
-            yield from _keys(value, f"{prefix}{key}.")
-
-
 def check_settings(composed: Mapping[str, Any]) -> None:
     """Refuse settings that are no experiment's and of which nothing can be made."""
     if removed := [key for key in SETTINGS if key not in composed]:
@@ -354,97 +276,3 @@ def check_engine(engine: Any) -> None:
         raise InputError(
             f"engine = {words[0]} needs {ENGINES[words[0]]}, which is not installed here: pip install {words[-1]}"
         )
-
-
-def _block(composed: Mapping[str, Any], experiment: str) -> Mapping[str, Any]:
-    if not isinstance(block := composed.get(experiment), Mapping):
-        raise InputError(
-            f"experiment '{experiment}' has no block in its chapter's configuration (of one of your own: config.yaml "
-            "in its folder)"
-        )
-    return block
-
-
-def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, dict[str, Any]]:
-    """Resolved configuration of every case of an experiment, checked: ``{case: plain dictionary}``."""
-    block = _block(composed, experiment)
-    base = {key: value for key, value in block.items() if key != "cases"}
-    names = names_of(composed)
-    result: dict[str, dict[str, Any]] = {}
-    given = block.get("cases", {})
-    wrong = given if isinstance(given, Mapping) else {"": given}
-    for name, case in wrong.items():
-        if not name or not isinstance(case, Mapping | None):
-            where = f"{experiment}.cases.{name}".rstrip(".")
-            raise InputError(f"{where} = {case} is not allowed: cases are names with what each changes")
-    for name, overrides in _expanded(given or {"default": {}}, names, experiment, base):
-        if name == "summary" or not re.fullmatch(CASE, name) or len(name) > LONGEST:
-            raise InputError(
-                f"{experiment}.cases: '{name[:80]}' is not allowed as a name: use up to {LONGEST} letters, digits and "
-                "'_', and not 'summary'"
-            )
-        if twin := next((known for known in result if known != name and known.lower() == name.lower()), None):
-            raise InputError(
-                f"{experiment}.cases: '{name}' and '{twin}' differ in case alone: not every disk keeps both"
-            )
-        merged = copy.deepcopy(base)
-        for key, value in overrides.items():
-            _assign(merged, key, copy.deepcopy(value), f"{experiment}.cases.{name}")
-        result[name] = resolved(names, experiment, merged)
-        check_values(result[name], experiment)
-    if not result:
-        raise InputError(
-            f"{experiment}.cases = {', '.join(given)} makes no case: a list that a case is made of is empty"
-        )
-    return result
-
-
-def settings(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
-    """Every parameter of an experiment and of its cases by its full name, as texts name them."""
-    block = {**resolved_block(composed, experiment), "cases": experiment_cases(composed, experiment)}
-    return dict(leaves({experiment: block}))
-
-
-def resolved_block(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
-    """The experiment's own block, resolved, without its cases."""
-    block = {key: value for key, value in _block(composed, experiment).items() if key != "cases"}
-    return resolved(names_of(composed), experiment, block)
-
-
-def _expanded(
-    cases: Mapping[str, Any], names: Mapping[str, Any], experiment: str, base: Mapping[str, Any]
-) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    for name, overrides in cases.items():
-        overrides = overrides or {}
-        if "each" not in overrides:
-            yield str(name), overrides
-            continue
-        key = str(overrides["each"])
-        rest = {other: value for other, value in overrides.items() if other != "each"}
-        values: Any = resolved(names, experiment, base)
-        for part in key.split("."):
-            if not isinstance(values, Mapping) or part not in values:
-                known = [name for name, value in leaves(base) if not name.endswith("_target_")]
-                raise InputError(f"{experiment}.cases.{name}.each: unknown key '{key}': {nearest(key, known)}")
-            values = values[part]
-        for value in values if isinstance(values, list) else [values]:
-            yield f"{name}{_label(value)}", {**rest, key: value}
-
-
-def _label(value: Any) -> str:
-    return (f"{value:g}" if isinstance(value, float) else str(value)).replace(".", "p").replace("-", "m")
-
-
-def _assign(node: dict[str, Any], dotted: str, value: Any, where: str) -> None:
-    *parents, last = dotted.split(".")
-    for part in parents:
-        if not isinstance(node.get(part), dict):
-            raise InputError(f"{where}: unknown key '{dotted}': {nearest(part, node)}")
-        node = node[part]
-    if last not in node:
-        raise InputError(f"{where}: unknown key '{dotted}': {nearest(last, node)}")
-    if isinstance(value, dict) and isinstance(node[last], dict) and "_target_" not in value:
-        for key, item in value.items():
-            _assign(node[last], key, item, f"{where}.{last}")
-    else:
-        node[last] = value

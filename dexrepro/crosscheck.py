@@ -18,8 +18,9 @@ from dexrepro import chapters
 from dexrepro.baselines import Baseline, agrees
 from dexrepro.cache_key import uses_engine
 from dexrepro.claims import NOT_EVALUATED
-from dexrepro.config import baseline_dir, selecting
+from dexrepro.config import baseline_dir
 from dexrepro.errors import InputError, one_line
+from dexrepro.overrides import selecting
 from dexrepro.plan import Plan, plan_chapter
 from dexrepro.progress import Silent
 from dexrepro.result import flat

@@ -15,7 +15,7 @@ from xml.parsers import expat
 import yaml
 
 from dexrepro import chapters
-from dexrepro.config import CASE
+from dexrepro.cases import CASE
 from dexrepro.errors import InputError, one_line
 from dexrepro.experiment import Experiment
 from dexrepro.storage import opened, read_json, read_text, read_yaml, require

@@ -15,6 +15,7 @@ from typing import Any
 
 from dexrepro import chapters
 from dexrepro.cache_key import content_of, own_digest, package_digest, presentation, uses_engine
+from dexrepro.cases import experiment_cases, resolved_block
 from dexrepro.checks import (
     check_files,
     check_lengths,
@@ -25,7 +26,7 @@ from dexrepro.checks import (
     differences,
     same,
 )
-from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block
+from dexrepro.config import SETTINGS, compose_chapter
 from dexrepro.errors import InputError, folder_named, nearest, refused
 from dexrepro.experiment import Experiment
 from dexrepro.physics.engine import REFERENCE, default

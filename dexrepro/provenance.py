@@ -21,8 +21,9 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
+from dexrepro.cases import resolved_block
 from dexrepro.checks import is_number, leaves
-from dexrepro.config import compose_chapter, config_files, resolved_block
+from dexrepro.config import compose_chapter, config_files
 
 
 @dataclass(frozen=True)

@@ -10,20 +10,11 @@ from typing import Any, NamedTuple
 
 from dexrepro import chapters
 from dexrepro.checks import FILES, is_whole
-from dexrepro.config import (
-    SETTINGS,
-    as_written,
-    check_overrides,
-    compose_chapter,
-    forced,
-    in_quotes,
-    offer,
-    own_keys,
-    parsed,
-)
+from dexrepro.config import SETTINGS, as_written, compose_chapter, offer, own_keys
 from dexrepro.errors import InputError, existing_folder, folder_named, nearest, refused
 from dexrepro.experiment import Experiment
 from dexrepro.keys import KEYS, SELECTION, TAKEN
+from dexrepro.overrides import check_overrides, forced, in_quotes, parsed
 
 
 class Selection(NamedTuple):

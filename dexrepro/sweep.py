@@ -13,8 +13,9 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 
-from dexrepro.config import config_dir, in_quotes
+from dexrepro.config import config_dir
 from dexrepro.errors import COMPLETES, InputError, folder_named, one_line
+from dexrepro.overrides import in_quotes
 
 PLUGINS = {  # by launcher: the package that has it, and the extra that brings it
     "ray": ("hydra_plugins.hydra_ray_launcher", "ray"),

@@ -28,8 +28,9 @@ from dexrepro import chapters
 from dexrepro.arrays import Array
 from dexrepro.cache_key import content_of
 from dexrepro.case import measured, targets
+from dexrepro.cases import experiment_cases
 from dexrepro.checks import is_number, leaves, set_value, value_at
-from dexrepro.config import baseline_dir, compose_chapter, experiment_cases
+from dexrepro.config import baseline_dir, compose_chapter
 from dexrepro.control.contract import KINDS, is_plain
 from dexrepro.errors import InputError, importable, nearest, refused
 from dexrepro.experiment import Metrics

@@ -9,10 +9,12 @@ from pathlib import Path
 import pytest
 
 from dexrepro import chapters
+from dexrepro.cases import experiment_cases, resolved_block
 from dexrepro.checks import check_sizes, is_number, leaves, set_value, value_at
-from dexrepro.config import SETTINGS, compose_chapter, experiment_cases, resolved_block, selecting
+from dexrepro.config import SETTINGS, compose_chapter
 from dexrepro.errors import InputError
 from dexrepro.interpolation import inherited, names_of
+from dexrepro.overrides import selecting
 from dexrepro.plan import plan_chapter
 from dexrepro.provenance import (
     Provenance,

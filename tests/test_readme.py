@@ -17,7 +17,8 @@ from conftest import ROOT, Shell
 from test_cli import SHORT
 
 from dexrepro import chapters, scoreboard, timings
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.cases import experiment_cases
+from dexrepro.config import compose_chapter
 from dexrepro.control.contract import Measured, check
 
 README = (ROOT / "README.md").read_text()

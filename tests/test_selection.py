@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from dexrepro.cli import main
-from dexrepro.config import parsed
+from dexrepro.overrides import parsed
 from dexrepro.selection import chapters_of, of_chapter, quoted
 from dexrepro.storage import read_json
 

@@ -8,8 +8,9 @@ import re
 import pytest
 
 from dexrepro import baselines, chapters
+from dexrepro.cases import settings
 from dexrepro.claims import NOT_EVALUATED, Predicate, filled
-from dexrepro.config import baseline_dir, compose_chapter, settings
+from dexrepro.config import baseline_dir, compose_chapter
 from dexrepro.report import verdicts
 from dexrepro.study import summaries
 

@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 from dexrepro import chapters
+from dexrepro.cases import experiment_cases, resolved_block
 from dexrepro.checks import is_number, leaves, value_at
-from dexrepro.config import compose_chapter, experiment_cases, resolved_block
+from dexrepro.config import compose_chapter
 from dexrepro.provenance import commented_leaves, parse_provenance
 from dexrepro.study.draws import parameters
 

@@ -145,7 +145,7 @@ def draw_command(options: argparse.Namespace) -> int:
 
 def _folders(numbers: Sequence[str], only: Sequence[str], results: Path, case: str | None) -> list[Path]:
     """The results that are selected, as far as they are there."""
-    from dexrepro.config import selecting
+    from dexrepro.overrides import selecting
     from dexrepro.plan import plan_chapter
     from dexrepro.selection import existing, quoted, select
 

@@ -15,9 +15,10 @@ from typing import Any
 from PIL import Image
 
 from dexrepro import chapters
+from dexrepro.cases import experiment_cases, resolved_block, settings
 from dexrepro.checks import leaves
 from dexrepro.claims import Claim, Erratum, cases_in, filled
-from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
+from dexrepro.config import compose_chapter
 from dexrepro.damage import check_result, is_safe, read_picture, read_table
 from dexrepro.experiment import Experiment
 from dexrepro.plan import lacking, outdated, plan_chapter

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import baselines, chapters
+from dexrepro.cases import experiment_cases, settings
 from dexrepro.claims import filled
-from dexrepro.config import compose_chapter, config_files, experiment_cases, settings
+from dexrepro.config import compose_chapter, config_files
 from dexrepro.disk_cache import cached
 from dexrepro.study.summaries import robustness_of
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from dexrepro.cases import resolved_block
 from dexrepro.checks import value_at
-from dexrepro.config import resolved_block
 from dexrepro.provenance import Provenance, origin_of
 from dexrepro.report import symbols
 

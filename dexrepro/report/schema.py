@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from dexrepro import chapters
-from dexrepro.config import SETTINGS, compose_chapter, resolved_block
+from dexrepro.cases import resolved_block
+from dexrepro.config import SETTINGS, compose_chapter
 from dexrepro.keys import KEYS
 from dexrepro.provenance import Provenance, origin_of, provenance
 

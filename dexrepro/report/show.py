@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from dexrepro import baselines, chapters, tune
+from dexrepro.cases import experiment_cases, resolved_block, settings
 from dexrepro.claims import Claim, Erratum, cases_in, filled
-from dexrepro.config import compose_chapter, experiment_cases, resolved_block, settings
+from dexrepro.config import compose_chapter
 from dexrepro.damage import check_result
 from dexrepro.errors import InputError, nearest
 from dexrepro.provenance import provenance

@@ -10,8 +10,9 @@ from functools import cache
 from typing import Any
 
 from dexrepro.arrays import Array
+from dexrepro.cases import experiment_cases, resolved_block
 from dexrepro.checks import is_number, leaves, set_value, value_at
-from dexrepro.config import compose_chapter, experiment_cases, resolved_block
+from dexrepro.config import compose_chapter
 from dexrepro.provenance import Provenance, provenance
 
 

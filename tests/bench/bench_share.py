@@ -13,7 +13,8 @@ import pytest
 
 from dexrepro import chapters
 from dexrepro.case import live, run
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.cases import experiment_cases
+from dexrepro.config import compose_chapter
 from dexrepro.physics.engine import unseen
 from dexrepro.physics.world import World
 

@@ -8,8 +8,9 @@ from typing import Any
 
 from dexrepro.arrays import Rng
 from dexrepro.case import generator, live
+from dexrepro.cases import experiment_cases
 from dexrepro.checks import set_value
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter
 from dexrepro.experiment import Config
 
 

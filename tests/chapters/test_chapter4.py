@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from dexrepro import chapters
+from dexrepro.cases import experiment_cases
 from dexrepro.chapters.chapter4 import measures, payload_arm, two_link
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter
 from dexrepro.robots import kinematics
 from dexrepro.robots.baxter import baxter
 from dexrepro.robots.inverse_kinematics import nearest

@@ -8,10 +8,11 @@ import types
 import numpy as np
 import pytest
 
+from dexrepro.cases import experiment_cases
 from dexrepro.chapters.chapter5 import crossing, pen
 from dexrepro.chapters.chapter5.real_handwriting import experiment as real_handwriting
 from dexrepro.cli import main
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config
 from dexrepro.robots.pen_arm import pen_arm_angles

@@ -7,6 +7,7 @@ from cases import rng
 
 from dexrepro import chapters
 from dexrepro.case import generator
+from dexrepro.cases import experiment_cases
 from dexrepro.chapters.chapter6 import bimanual, learning, plane
 from dexrepro.chapters.chapter6.arm_obstacles import experiment as arm_obstacles
 from dexrepro.chapters.chapter6.box_carrying import experiment as box_carrying
@@ -14,7 +15,7 @@ from dexrepro.chapters.chapter6.constraint_cases import experiment as constraint
 from dexrepro.chapters.chapter6.keep_out import experiment as keep_out
 from dexrepro.chapters.chapter6.obstacle_terms import experiment as obstacle_terms
 from dexrepro.chapters.chapter6.planar_constraint import experiment as planar_constraint
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter
 from dexrepro.experiment import Config
 from dexrepro.humans.segmentation import pauses
 from dexrepro.primitives.barrier import Constraint

@@ -9,12 +9,13 @@ import pytest
 from cases import rng
 
 from dexrepro import baselines, chapters
+from dexrepro.cases import experiment_cases
 from dexrepro.chapters.chapter8 import task
 from dexrepro.chapters.chapter8.circle_tracking import experiment as circle_tracking
 from dexrepro.chapters.chapter8.sensitivity import Variant, sensitivity_table
 from dexrepro.chapters.chapter8.sponge import experiment as sponge
 from dexrepro.chapters.chapter8.unknown_object import experiment as unknown_object
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter
 from dexrepro.control.barrier_tracking import barrier_terms
 from dexrepro.control.impedance_learning import ConstantGain
 from dexrepro.control.interaction_optimum import InteractionCost, InteractionModel, optimal_gain

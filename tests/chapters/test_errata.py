@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 
 from dexrepro import chapters
+from dexrepro.cases import experiment_cases
 from dexrepro.checks import leaves
 from dexrepro.claims import Erratum
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.config import compose_chapter
 
 SWITCHED = [
     (number, erratum) for number in chapters.numbers() for erratum in chapters.load(number).errata if erratum.switch

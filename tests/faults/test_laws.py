@@ -11,7 +11,8 @@ import pytest
 
 from dexrepro import chapters, cli, runner
 from dexrepro.case import generator, live
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.cases import experiment_cases
+from dexrepro.config import compose_chapter
 from dexrepro.control.contract import Command
 from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Recording

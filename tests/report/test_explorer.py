@@ -12,7 +12,8 @@ import pytest
 
 from dexrepro import chapters
 from dexrepro.case import live
-from dexrepro.config import compose_chapter, experiment_cases
+from dexrepro.cases import experiment_cases
+from dexrepro.config import compose_chapter
 from dexrepro.experiment import Recording
 from dexrepro.recordings import save_recording
 from dexrepro.report import explorer

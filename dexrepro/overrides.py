@@ -1,0 +1,91 @@
+"""Words such as ``chapter=2`` and ``movement_estimation.period=5`` as Hydra's grammar of overrides reads them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from dexrepro.checks import value_at
+from dexrepro.errors import InputError, nearest
+
+if TYPE_CHECKING:  # Hydra is imported where it is needed: it takes as long as a whole command may
+    from hydra.core.override_parser.types import Override
+
+LARGEST_SWEEP = 100_000  # jobs
+
+
+def parsed(text: str) -> Override | None:
+    """What Hydra's grammar makes of a word, None where it is none of its overrides."""
+    from hydra.core.override_parser.overrides_parser import OverridesParser
+    from hydra.errors import HydraException
+
+    try:
+        return OverridesParser.create().parse_override(text)
+    except (HydraException, ValueError, RecursionError):  # the latter for thousands of digits or brackets
+        return None
+
+
+def in_quotes(text: str) -> str:
+    """A text that Hydra's grammar takes as it is."""
+    return "'" + text.replace("'", "\\'") + ("\\'" if text.endswith("\\") else "'")
+
+
+def selecting(results: Path, only: Sequence[str] = ()) -> list[str]:
+    """Overrides that name the folder of the results and the experiments (none: all)."""
+    return [f"results={in_quotes(str(results))}", *([f"only=[{','.join(only)}]"] if only else [])]
+
+
+def forced(overrides: Sequence[str], raw: Mapping[str, Any]) -> list[str]:
+    """Overrides of inherited keys, which the files do not spell out, as Hydra takes them."""
+    keys = set(keys_in(raw))
+    return [f"++{text}" if re.match(r"[A-Za-z_]\w*\.", text) and text.partition("=")[0] not in keys
+            and not text.startswith("hydra") else text for text in overrides]  # fmt: skip
+
+
+def understood(overrides: Sequence[str]) -> list[Override]:
+    """Overrides as Hydra reads them. Raises InputError for a word that is none of them or names no key."""
+    found = []
+    for text in overrides:
+        override = parsed(text)
+        if override is None or not override.key_or_group:
+            raise InputError(
+                f"'{text[:200]}' is not an override of the form key=value, such as chapter=2, only=EXPERIMENT or "
+                "figure=2.7"
+            )
+        if override.is_range_sweep():
+            sweep: Any = override.value()
+            count = math.ceil((sweep.stop - sweep.start) / sweep.step) if sweep.step else 0
+            if not 0 < count <= LARGEST_SWEEP:
+                raise InputError(f"'{text}' is not allowed: it makes {max(count, 0)} jobs, {LARGEST_SWEEP} at most")
+        found.append(override)
+    return found
+
+
+def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> None:
+    """Refuse overrides that do not parse or whose key the shipped configuration does not have."""
+    keys = list(keys_in(shipped))
+    for override in understood(overrides):
+        key = override.key_or_group
+        if override.is_add() or override.is_force_add() or "/" in key or key.startswith("hydra"):
+            continue
+        if key not in keys:
+            listed = re.sub(r"(\.\d+)(\..*)?$", "", key)
+            if isinstance(value_at(shipped, listed), list):
+                raise InputError(f"'{key}' lies in a list, which is given whole: '{listed}=[…]'")
+            of_case = re.fullmatch(r"(\w+)\.(cases\.\w+)\.(.+)", key)
+            if of_case and {f"{of_case[1]}.{of_case[2]}", f"{of_case[1]}.{of_case[3]}"} <= {*keys}:
+                raise InputError(
+                    f"{of_case[1]}.{of_case[2]} does not set '{of_case[3]}' yet: add it, '+{override.input_line}'"
+                )
+            raise InputError(f"unknown key '{key}': {nearest(key, keys)}")
+
+
+def keys_in(node: Mapping[str, Any], prefix: str = "") -> Iterator[str]:
+    """Every key of a configuration with those above it, such as ``shared.arm.kp``."""
+    for key, value in node.items():
+        yield f"{prefix}{key}"
+        if isinstance(value, Mapping):
+            yield from keys_in(value, f"{prefix}{key}.")
