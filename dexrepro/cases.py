@@ -17,13 +17,10 @@ LONGEST = 60  # letters; with what is written behind and beside it, no name is t
 
 def experiment_cases(composed: Mapping[str, Any], experiment: str) -> dict[str, dict[str, Any]]:
     """Resolved configuration of every case of an experiment, checked: ``{case: plain dictionary}``."""
-    block = _block(composed, experiment)
-    base = {key: value for key, value in block.items() if key != "cases"}
+    base, given = _block(composed, experiment)
     names = names_of(composed)
     result: dict[str, dict[str, Any]] = {}
-    given = block.get("cases", {})
-    wrong = given if isinstance(given, Mapping) else {"": given}
-    for name, case in wrong.items():
+    for name, case in (given if isinstance(given, Mapping) else {"": given}).items():
         if not name or not isinstance(case, Mapping | None):
             where = f"{experiment}.cases.{name}".rstrip(".")
             raise InputError(f"{where} = {case} is not allowed: cases are names with what each changes")
@@ -57,17 +54,17 @@ def settings(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
 
 def resolved_block(composed: Mapping[str, Any], experiment: str) -> dict[str, Any]:
     """The experiment's own block, resolved, without its cases."""
-    block = {key: value for key, value in _block(composed, experiment).items() if key != "cases"}
-    return resolved(names_of(composed), experiment, block)
+    return resolved(names_of(composed), experiment, _block(composed, experiment)[0])
 
 
-def _block(composed: Mapping[str, Any], experiment: str) -> Mapping[str, Any]:
+def _block(composed: Mapping[str, Any], experiment: str) -> tuple[dict[str, Any], Any]:
+    """The experiment's own values, and its cases."""
     if not isinstance(block := composed.get(experiment), Mapping):
         raise InputError(
             f"experiment '{experiment}' has no block in its chapter's configuration (of one of your own: config.yaml "
             "in its folder)"
         )
-    return block
+    return {key: value for key, value in block.items() if key != "cases"}, block.get("cases", {})
 
 
 def _expanded(

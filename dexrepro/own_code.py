@@ -86,10 +86,8 @@ def check_own(values: Mapping[str, Any]) -> None:
                 raise refused(f"{where}.{part}", "null" if value is None else repr(value), "be a number")
         if not inspect.isclass(law) or (kind := getattr(law, "kind", None)) not in KINDS:
             continue
-        for method, given in {
-            "reset": ["measured"],
-            "__call__": ["measured", "desired"][: 1 + (kind != "holding")],
-        }.items():
+        called = ["measured"] if kind == "holding" else ["measured", "desired"]
+        for method, given in {"reset": ["measured"], "__call__": called}.items():
             if not takes(law, method, *given):
                 raise InputError(f"{text} is no law of kind '{kind}': it must have {method}(self, {', '.join(given)})")
 

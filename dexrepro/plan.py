@@ -223,12 +223,12 @@ def _differs(
 ) -> list[str]:
     """In what an experiment differs from the book. Raises InputError where a text stands for a number."""
     book = experiment_cases(shipped, name)
+    first = next(iter(book.values()))
     for case, values in cases.items():
-        check_types(values, book.get(case, next(iter(book.values()))), name)
-        check_lengths(values, book.get(case, next(iter(book.values()))), name)
-        check_files(values, book.get(case, next(iter(book.values()))), name)
+        for check in (check_types, check_lengths, check_files):
+            check(values, book.get(case, first), name)
     changed = [key for key, value in config[name].items() if not same(value, shipped[name].get(key))]
-    check_unread(changed, cases.values(), next(iter(book.values())), name)
+    check_unread(changed, cases.values(), first, name)
     own = {_key(text): text for text in differences(block, resolved_block(shipped, name))}
     listed = differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
     reached: dict[str, str] = {}  # what changes in a case, by its key there; the first case that has it

@@ -29,10 +29,8 @@ NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|[-+]?inf|" + STAMP)
 
 
 def lines_of(text: str) -> list[str]:
-    """The lines of a text, one in the place of several that an entry in quotes goes over, and empty ones after it.
-
-    Raises ValueError with half a sentence where it is another kind of text than a table.
-    """
+    """The lines of a text; several that an entry in quotes goes over are joined, and empty ones follow. Refuses other
+    kinds of text."""
     text = text.replace("\u2212", "-")
     begin = text.lstrip()[:SHOWN]
     if not begin:
