@@ -45,6 +45,7 @@ BESIDE = (  # what stands in a header beside the names, and what these are parte
     (re.compile(r"\s(#|//).*"), ""),
     (re.compile(r",?\s+(and|und)\s+"), ", "),
 )
+LATEST = 30  # lines from the first with numbers on in which the names may stand
 LONGEST = 300  # letters of a header in a sentence
 
 
@@ -109,6 +110,7 @@ class Header:
         self.names: list[str] = []
         self.units = [""] * len(table.wanted)
         self.blanks = False  # whether the names are parted by blanks
+        self._pass_numbers()
         for k in sorted(table.head[::-1], key=self._is_prose):
             self._take(k)
         self._check_named()
@@ -116,6 +118,18 @@ class Header:
             shown = ", ".join(unit or "no unit" for unit in self.units[1:])
             raise ValueError(f"its header gives {', '.join(table.wanted[1:])} in {shown}; give all in one unit")
         self._check_shifted()
+
+    def _pass_numbers(self) -> None:
+        """Let the rows begin behind a line that is the first to name the columns, if no row of nothing but numbers
+        stands before it: files of OptiTrack and LabVIEW have numbers with names above their columns."""
+        table, first = self.table, min(self.table.body, default=len(self.table.lines))
+        rows = [_fields(COMMENT.sub("", line)) for line in table.lines[: first + LATEST]]
+        named = [self._found(row) == len(table.wanted) for row in rows]
+        for k in range(first, first if True in named[:first] else len(rows)):
+            if named[k] and not numbers_in(table.lines[k]):
+                return table.rows_behind(k + 1)
+            if (row := _fields(table.lines[k])) and all(map(is_entry, row)):
+                break
 
     def _found(self, names: list[str]) -> int:
         """How many columns are the wanted ones."""

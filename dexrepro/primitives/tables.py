@@ -57,7 +57,11 @@ class Table:
         self.lines, self.wanted = lines, wanted
         self.columns: list[int] | None = None
         self.stripped = [line.strip(" \t,;") for line in lines]
-        first = self._first_row(min(len(wanted), 3))
+        self.rows_behind(0)
+
+    def rows_behind(self, start: int) -> None:
+        """Let the rows begin with the first line from ``start`` on that is one; the head are all lines before them."""
+        lines, first = self.lines, self._first_row(start, min(len(self.wanted), 3))
         self.head = [k for k in range(first) if self.stripped[k] and not self.stripped[k].startswith("sep=")]
         self.plain = [k for k in self.head if not COMMENT.match(lines[k])]
         rows = [k for k in range(first, len(lines)) if self.stripped[k]]
@@ -66,9 +70,11 @@ class Table:
         self.separator = max(SEPARATORS, key=lambda separator: self._fit(separator, above))
         self.widths = set(map(len, self.first_rows(self.separator)))
 
-    def _first_row(self, enough: int) -> int:
-        """The first line with enough numbers; one with words, too, is about the recording if the next has too few."""
-        rows = ((k, line) for k, line in enumerate(self.lines) if self.stripped[k] and not COMMENT.match(line))
+    def _first_row(self, start: int, enough: int) -> int:
+        """The first line from ``start`` on with enough numbers; one with words, too, is about the recording if the next
+        has too few."""
+        later = enumerate(self.lines[start:], start)
+        rows = ((k, line) for k, line in later if self.stripped[k] and not COMMENT.match(line))
         for (k, line), (_, after) in pairwise(chain(rows, [(0, "")])):
             full = numbers_in(line) >= enough
             if full and (not re.search("[a-z]{2}", line) or not after or numbers_in(after) >= enough):

@@ -96,6 +96,10 @@ COMMAS = rows("{t};{x};{y}").replace(".", ",")
         "id,time,x,y,comment\n" + rows("a,{t},{x},{y},fine"),
         rows("+{t}e0,{x},{y}"),
         "Format Version,1.23,Rate,120.000,Exported,2\n\n,,pen,pen\nFrame,Time (Seconds),X,Y\n" + rows("7,{t},{x},{y}"),
+        "Format Version,1.23,Rate,120.000,Exported,2\n\n,,pen,pen,pen\n,,1,1,1\n,,Position,Position,Position\n"
+        "Frame,Time (Seconds),X,Y,Z\n" + rows("7,{t},{x},{y},5"),
+        "LabVIEW Measurement\nDate\t2024/05/01\t2024/05/01\t2024/05/01\nX_Dimension\tTime\tTime\tTime\n"
+        "X0\t0.0\t0.0\t0.0\nDelta_X\t0.1\t0.1\t0.1\n***End_of_Header***\n\ntime\tx\ty\tz\n" + rows("{t}\t{x}\t{y}\t5"),
         ",time,x,y\n" + rows("7,{t},{x},{y}"),
         "time,x,y\n" + rows("0 days 00:00:0{t}00000,{x},{y}"),
         "time,x,y\n" + rows("1 days 00:00:0{t},{x},{y}"),
