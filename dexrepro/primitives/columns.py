@@ -37,6 +37,7 @@ NO_PLACE = {"orientation", "rotation", "rot", "angular", "angle", "euler", "quat
             "linear", "velocity", "vel", "v", "u", "w", "omega", "speed", "dot", "ddot", "d", "dd", "delta", "diff",
             "acceleration", "accel", "acc", "a", "jerk", "gyro", "gyroscope", "mag", "magnetometer", "force", "f",
             "torque", "wrench", "moment", "error", "err", "e", "std", "var", "cov", "covariance", "seq"}  # fmt: skip
+KINDS = {word for word in PLACE | NO_PLACE if len(word) > 1}  # of columns, in a row above their names
 NAME = re.compile(  # neither a number nor prose
     r"(?!(in|of|for|at|per|the|over|from|versus|and|und)\b|.*\b(is|are|by|to)\b)[^\W\d]", re.IGNORECASE
 )
@@ -46,6 +47,7 @@ BESIDE = (  # what stands in a header beside the names, and what these are parte
     (re.compile(r",?\s+(and|und)\s+"), ", "),
 )
 LATEST = 30  # lines from the first with numbers on in which the names may stand
+ABOVE = 5  # lines above the names in which the row of kinds may stand
 LONGEST = 300  # letters of a header in a sentence
 
 
@@ -62,6 +64,11 @@ def unit_in(name: str) -> str:
     first, *rest = words_in(name) or [""]
     found = next((word for word in reversed(rest) if word in UNITS - NAMES["time"][0]), "")
     return found or (first if rest and first in OTHERS else "")
+
+
+def are_units(names: Sequence[str]) -> bool:
+    """Whether these are the units of columns rather than their names."""
+    return {name.strip("[]() ").lower() for name in names} <= UNITS
 
 
 def ranked(wanted: str, names: Sequence[str]) -> list[tuple[bool, bool, bool, bool, int]]:
@@ -144,6 +151,20 @@ class Header:
                 names = fewer
         return names
 
+    def _grouped(self, k: int) -> list[str]:
+        """The names in a line, each behind the kind of its columns where a row of kinds stands above: Rotation X."""
+        lines, mark = self.table.lines, mark_in(self.table.lines[k])
+        names = self._names(lines[k])
+        for line in reversed(lines[max(k - ABOVE, 0) : k] if mark and not are_units(names) else []):
+            kinds = [entry.strip(" \"'") for entry in entries(line, mark or "")]
+            is_kind = any(KINDS & {*words_in(kind)} for kind in kinds[1:])
+            if len(kinds) == len(names) > len({*kinds}) and is_kind and not numbers_in(line):
+                for column, kind in enumerate(kinds[1:], 1):  # one that is written once goes for those behind it, too
+                    kinds[column] = kind or kinds[column - 1]
+                parts = [re.split(r"(?=[\[(])", kind, maxsplit=1) for kind in kinds]  # a unit stays behind
+                return [f"{kind.strip()} {name}{''.join(unit)}".strip() for (kind, *unit), name in zip(parts, names)]
+        return names
+
     def _is_prose(self, k: int) -> bool:
         """Whether a line is a comment of another number of words than rows have entries."""
         line = self.table.lines[k]
@@ -159,9 +180,8 @@ class Header:
     def _take(self, k: int) -> None:
         """Take the columns, or their units, from a line, if it names them."""
         line, columns = self.table.lines[k], self.table.columns
-        names = self._names(line)
-        units = [name.strip("[]() ") for name in names]
-        known = {unit.lower() for unit in units} <= UNITS
+        names = self._grouped(k)
+        units, known = [name.strip("[]() ") for name in names], are_units(names)
         if columns is not None:
             if known and len(units) == len(self.names):  # a row of units above the names
                 self.units = [unit or units[column] for unit, column in zip(self.units, columns, strict=True)]
@@ -187,8 +207,8 @@ class Header:
         if table.plain and numbers_in(table.lines[last]):
             shown = f"line {last + 1} holds '{table.lines[last].strip()[:SHOWN]}'"
             raise ValueError(f"{shown}: it must have {wanted}, or name the columns")
-        lines = [table.lines[k] for k in reversed(table.plain or table.head)]
-        if naming := [self._names(line) for line in lines if table.plain or self._is_header(line)]:
+        lines = reversed(table.plain or table.head)
+        if naming := [self._grouped(k) for k in lines if table.plain or self._is_header(table.lines[k])]:
             shown = ", ".join(name or "(no name)" for name in max(naming, key=self._found))[:LONGEST]
             raise ValueError(f"its columns are {shown}; they must be {wanted}")
         if len(self.units) != len(table.wanted):

@@ -98,6 +98,11 @@ COMMAS = rows("{t};{x};{y}").replace(".", ",")
         "Format Version,1.23,Rate,120.000,Exported,2\n\n,,pen,pen\nFrame,Time (Seconds),X,Y\n" + rows("7,{t},{x},{y}"),
         "Format Version,1.23,Rate,120.000,Exported,2\n\n,,pen,pen,pen\n,,1,1,1\n,,Position,Position,Position\n"
         "Frame,Time (Seconds),X,Y,Z\n" + rows("7,{t},{x},{y},5"),
+        ",,Rotation,Rotation,Rotation,Position,Position,Error\nFrame,Time,X,Y,Z,X,Y,\n" + rows("7,{t},5,5,5,{x},{y},1"),
+        ",Velocity (m/s),,Position (m),\nt,x,y,x,y\n" + rows("{t},5,5,{x},{y}"),
+        "Lab 5, position of pen, Ann\ntime,x,y\n" + PLAIN,
+        "velocity,,\nforce,5,\ntime,x,y\n" + PLAIN,
+        ",Position,\ns,m,m\ntime,x,y\n" + PLAIN,
         "LabVIEW Measurement\nDate\t2024/05/01\t2024/05/01\t2024/05/01\nX_Dimension\tTime\tTime\tTime\n"
         "X0\t0.0\t0.0\t0.0\nDelta_X\t0.1\t0.1\t0.1\n***End_of_Header***\n\ntime\tx\ty\tz\n" + rows("{t}\t{x}\t{y}\t5"),
         ",time,x,y\n" + rows("7,{t},{x},{y}"),
@@ -248,6 +253,16 @@ def test_units_come_from_the_header_or_from_who_knows_better(
         ("time [h],x,y", Format(), "its header gives time in h; convert it to one of s, ms, us, ns, min"),
         ("time,x1,y1", Format(), "its columns are time, x1, y1; they must be time, x, y"),
         ("Frame,X,Y\n,mm,mm", Format(), "its columns are Frame, X, Y; they must be time, x, y"),
+        (
+            ",Rotation,Rotation\ntime,x,y",
+            Format(),
+            "its columns are time, Rotation x, Rotation y; they must be time, x, y",
+        ),
+        (",Rotation,Rotation\n,pen,pen\ntime,x,y", Format(), "its columns are time, Rotation x, Rotation y; they must"),
+        (",Position,\ns,mm,mm\ntime,x,y", Format("cm"), "its header gives x in mm, not in cm; set unit=mm"),
+        (",Force,\ntime,x,y", Format(), "its columns are time, Force x, Force y; they must be time, x, y"),
+        (",Position [mm],\ntime,x,y", Format("cm"), "its header gives x in mm, not in cm; set unit=mm"),
+        (",L,L,R,R\ntime,x,y,x,y", Format(), r"its columns x and x .columns 2 and 4. could both be x; rename one"),
         ("time\tx y", Format(), "its columns are time, x y; they must be time, x, y"),
         (
             "time,left.x,right.x,y",
