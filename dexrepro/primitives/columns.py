@@ -177,6 +177,13 @@ class Header:
         found = self._found(names) > 1 or any(bare if mark_in(line) else bare[:1])
         return found and len(names) in self.table.widths and all(map(NAME.match, names))
 
+    def _resemblance(self, k: int) -> tuple[bool, bool, int, int]:
+        """How much a line is like a header: no numbers, a name for each column, many of the wanted, many others."""
+        line = self.table.lines[k]
+        names = self._names(line)
+        others = sum(not are_units([name]) for name in names)
+        return not numbers_in(line), len(names) in self.table.widths, self._found(names), others
+
     def _take(self, k: int) -> None:
         """Take the columns, or their units, from a line, if it names them."""
         line, columns = self.table.lines[k], self.table.columns
@@ -208,8 +215,9 @@ class Header:
             shown = f"line {last + 1} holds '{table.lines[last].strip()[:SHOWN]}'"
             raise ValueError(f"{shown}: it must have {wanted}, or name the columns")
         lines = reversed(table.plain or table.head)
-        if naming := [self._grouped(k) for k in lines if table.plain or self._is_header(table.lines[k])]:
-            shown = ", ".join(name or "(no name)" for name in max(naming, key=self._found))[:LONGEST]
+        if naming := [k for k in lines if table.plain or self._is_header(table.lines[k])]:
+            names = self._grouped(max(naming, key=self._resemblance))
+            shown = ", ".join(name or "(no name)" for name in names)[:LONGEST]
             raise ValueError(f"its columns are {shown}; they must be {wanted}")
         if len(self.units) != len(table.wanted):
             self.units = [""] * len(table.wanted)
