@@ -32,6 +32,7 @@ MESHES = (".stl", ".obj", ".dae")  # what the engine reads
 NEEDED = ("value", "ixx", "iyy", "izz", "size", "radius", "length")  # of an element that is there, as in ROS
 LONGEST = 255  # letters of a name; PyBullet ends the process for some thousand bytes
 LARGEST = 10.0  # m; what is longer in an arm's file is likely to be in another unit
+DENSEST = 1e8  # kg/m^3, 5000 times gold; so dense is a ball whose mass is in g, its moment in kg m^2
 ROUNDING = 0.05
 """How far an inertia may be from a rigid body's and still be read: what its largest principal moment exceeds the sum of
 the others by, or what its smallest is below zero, as a share of the largest. Makers' rounding stays below."""
@@ -98,7 +99,11 @@ def _parsed(path: Path) -> xml.Element:
     def start(tag: str, attributes: dict[str, str]) -> None:
         builder.start(tag, attributes).line = parser.CurrentLineNumber  # type: ignore[attr-defined]
 
+    def elsewhere(_name: str, _base: str | None, file: str | None, _public: str | None) -> int:
+        raise ValueError(f"it takes in another file, '{file}', which is not read; put the text of that in its place")
+
     parser.StartElementHandler, parser.EndElementHandler = start, builder.end
+    parser.ExternalEntityRefHandler = elsewhere
     try:
         parser.Parse(text.rstrip().encode(), True)
     except expat.ExpatError as error:
@@ -211,6 +216,13 @@ class _Tree:
                     f"joint '{_name(node)}' follows {followed} (mimic), but an arm's joints are "
                     f"free; end the arm before it, at {_link(node, 'parent')}"
                 )
+        bare = [
+            name
+            for name in (_link(node, "child") for node in chain)
+            if all(self.links[part].find("inertial") is None for part, _ in self.carried(name, moving))
+        ]
+        if len(bare) > 1:
+            raise ValueError(f"links {', '.join(bare)} move but have no <inertial>; give each a mass")
         names = set(map(_name, chain))
         for part in [part for name in moving for part, _ in self.carried(name, moving)]:
             mimic, kind = self.into[part].find("mimic"), self.into[part].get("type")
@@ -372,8 +384,9 @@ def _doubts(above: Sequence[xml.Element], bodies: Sequence[Link]) -> Iterator[st
     for link in bodies:
         if (away := math.hypot(*link.com)) > LARGEST:
             yield f"link '{link.name}' has its centre of mass {away:g} m from its joint; lengths are in m"
-        moment = float(np.linalg.eigvalsh(link.inertia_matrix)[-1])
-        if moment > link.mass * LARGEST**2 / 10:
+        moment = max(float(np.linalg.eigvalsh(link.inertia_matrix)[-1]), 0.0)
+        radius = math.sqrt(2.5 * moment / link.mass)  # of a ball
+        if radius > LARGEST / 2 or 0 < 4 / 3 * math.pi * radius**3 * DENSEST < link.mass:
             yield f"link '{link.name}' has {moment:g} kg m^2 at {link.mass:g} kg; its units are kg and m"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -120,6 +121,7 @@ LIMIT = '<limit lower="-1" upper="2" effort="9" velocity="3"/>'
 LOOP = '<joint name="loop" type="revolute"><parent>three</parent><child>one</child></joint>'
 
 
+ROBOT = '<robot name="three">'
 HANGING = "".join(  # a thousand frames, each fixed to the one before
     f'<link name="f{k}"/><joint name="g{k}" type="fixed"><parent link="{f"f{k - 1}" if k else "tip"}"/>'
     f'<child link="f{k}"/></joint>' for k in range(1100))  # fmt: skip
@@ -173,6 +175,7 @@ def test_what_real_files_hold_beside_the_arm_changes_nothing(
         (("robot", "html"), "it is a web page; download the file itself that it shows"),
         (("robot", "model"), "it is no URDF: it begins with <model>"),
         (("0.1 0.1 0.2", "0.1 -0.1 0.2"), 'line 1: <box size="0.1 -0.1 0.2"> of link .one. has a negative size'),
+        ((ROBOT, f"<!DOCTYPE robot [<!ENTITY hand SYSTEM 'hand.xml'>]>{ROBOT}&hand;"), "'hand.xml', which is not read"),
         (("<robot", BOMB), "it is no XML file: limit on input amplification"),
         (('value="2"', 'value="0,2"'), 'line 1: <mass value="0,2"> does not hold one number'),
         (('<mass value="1"/>', "<mass>1</mass>"), 'line 1: <mass value=""> does not hold one number'),
@@ -229,6 +232,9 @@ def test_a_body_weighs_what_it_carries(path: Path) -> None:
     path.write_text(URDF.replace(INERTIAL.format(0.05, 2), "").replace(INERTIAL.format(0.02, 1), ""))
     with pytest.raises(ValueError, match="link 'one' moves but has no <inertial>; give it a mass, or fix its joint"):
         from_urdf(str(path), "tip")
+    path.write_text(re.sub("<inertial>.*?</inertial>", "", URDF, flags=re.DOTALL))
+    with pytest.raises(ValueError, match=r"links one, three move but have no <inertial>; give each a mass$"):
+        from_urdf(str(path), "eye")
     path.write_text(URDF.replace('value="2"', 'value="0"').replace('value="1"', 'value="0"'))
     with pytest.raises(ValueError, match="link 'one' moves but has the mass 0 kg; give it a mass, or fix its joint"):
         from_urdf(str(path), "tip")
@@ -339,6 +345,7 @@ def test_no_limits_or_zeros_are_none(path: Path) -> None:
             ('value="2"/>' + MOMENTS, 'value="2"/><inertia ixx="90" iyy="80" izz="70"/>'),
             "link 'one' has 9.* kg m.2 at 3 kg",
         ),
+        (('value="2"/>', 'value="2000000"/>'), "link 'one' has .* kg m.2 at 2e.06 kg; its units are kg and m"),
     ],
 )
 def test_what_is_read_though_it_is_doubtful_is_said(path: Path, change: tuple[str, str], sentence: str) -> None:
