@@ -179,6 +179,10 @@ def test_a_recorded_path_is_followed(folder: Path) -> None:
     leader = "{csv: {file: path.csv, unit: cm}}"
     recording, _ = run('computed_torque.ComputedTorque, model: "${scene.model}", frequency: 30', leader=leader)
     assert recording["leader.pose"][-1] == pytest.approx([0.5499, 0.0501, 0], abs=1e-3)
+    with pytest.raises(
+        InputError, match=r"the point .50, 10, 0. m of .*; scene.leader=.csv: .file: ..., unit: mm}} rea"
+    ):
+        run('computed_torque.ComputedTorque, model: "${scene.model}", frequency: 30', leader="{csv: path.csv}")
 
 
 OWN_LINE = "{line: {start: [0.72, 0.1, 0], end: [0.5, 0.1, 0], period: 4}}"

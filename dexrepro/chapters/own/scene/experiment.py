@@ -28,6 +28,7 @@ from dexrepro.robots.inverse_kinematics import Unreachable, solve
 from dexrepro.robots.kinematics import forward
 
 CHECKED = 25  # points of the path whose reach is checked
+FAR = 5.0  # m; where an arm is sent by a file whose lengths are in another unit
 
 
 def model(arm: Arm, gravity: Sequence[float], mass_error: float, key: str = "arm") -> RigidBodyModel:
@@ -164,7 +165,9 @@ def start(config: Config, path: Path) -> Array:
         try:
             found = solve(arm, place, start=found, restarts=5)
         except Unreachable as error:
-            raise InputError(f"the point {where}: {error}") from error
+            far = config.leader.get("csv") and np.abs(place).max() > FAR
+            remedy = "; scene.leader={csv: {file: ..., unit: mm}} reads a file in mm" if far else ""
+            raise InputError(f"the point {where}: {error}{remedy}") from error
         height = forward(arm, found)[0][2]
         if abs(height - place[2]) > 1e-4:  # the inverse kinematics of a planar arm looks at x and y alone
             raise InputError(f"the point {where}: the arm stays at z = {height:g} m")
