@@ -26,17 +26,22 @@ QUANTITIES = {  # by the key that sets the unit: which wanted column tells it, i
     "time_unit": (0, "times", TIMES, OTHER_TIMES),
     "unit": (1, "lengths", LENGTHS, OTHERS),
 }
-NAMES = {  # of a wanted column: its plain ones, and those that count where no column has one
+OTHER_LETTERS = {"b", "g", "m", "t"}  # before a coordinate: of a magnetic field, gravity, a moment, a torque
+NAMES = {  # of a wanted column: its plain ones, those that count where no column has one, and what begins no name of it
     "time": (
-        {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}, {"datetime", "elapsed"}),
-    **{axis: ({axis}, {f"p{axis}", f"pos{axis}", f"{axis}pos"}) for axis in "xyz"},
+        {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}, {"datetime", "elapsed"},
+        set[str]()),
+    **{axis: ({axis}, {f"p{axis}", f"pos{axis}", f"{axis}pos"}, OTHER_LETTERS) for axis in "xyz"},
 }  # fmt: skip
 WHOLE, NANO = {"sec", "secs", "seconds"}, {"nanosec", "nanosecs", "nsec", "nsecs", "nanoseconds"}  # of one stamp
 PLACE = {"position", "pos"}
 NO_PLACE = {"orientation", "rotation", "rot", "angular", "angle", "euler", "quaternion", "quat", "q", "r", "twist",
             "linear", "velocity", "vel", "v", "u", "w", "omega", "speed", "dot", "ddot", "d", "dd", "delta", "diff",
             "acceleration", "accel", "acc", "a", "jerk", "gyro", "gyroscope", "mag", "magnetometer", "force", "f",
-            "torque", "wrench", "moment", "error", "err", "e", "std", "var", "cov", "covariance", "seq"}  # fmt: skip
+            "torque", "wrench", "moment", "error", "err", "e", "std", "var", "cov", "covariance", "seq", "ori",
+            "angles", "rotvec", "tilt", "normal", "scale", "velocities", "speeds", "rate", "geschwindigkeit",
+            "accelerations", "accelerometer", "beschleunigung", "gravity", "magnetic", "forces", "kraft", "torques",
+            "tau", "moments", "momentum", "impulse", "stiffness", "errors", "sd", "sigma"}  # fmt: skip
 KINDS = {word for word in PLACE | NO_PLACE if len(word) > 1}  # of columns, in a row above their names
 NAME = re.compile(  # neither a number nor prose
     r"(?!(in|of|for|at|per|the|over|from|versus|and|und)\b|.*\b(is|are|by|to)\b)[^\W\d]", re.IGNORECASE
@@ -73,10 +78,10 @@ def are_units(names: Sequence[str]) -> bool:
 
 def ranked(wanted: str, names: Sequence[str]) -> list[tuple[bool, bool, bool, bool, int]]:
     """The columns that have the wanted word, first those that have no other than a unit, a place's before others."""
-    result, (plain, often) = [], NAMES[wanted]
+    result, (plain, often, never) = [], NAMES[wanted]
     for column, name in enumerate(names):
-        words = {*words_in(name)}
-        if words & (plain | often) and not words & NO_PLACE:
+        first, words = {*words_in(name)[:1]}, {*words_in(name)}
+        if words & (plain | often) and not words & NO_PLACE and not first & never:
             more = words - plain - often - PLACE - UNITS | words & {"min"}
             result.append((not words & plain, bool(more), not PLACE & words, len(words) > 1, column))
     return sorted(result)

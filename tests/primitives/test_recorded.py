@@ -263,6 +263,21 @@ def test_units_come_from_the_header_or_from_who_knows_better(
         (",Force,\ntime,x,y", Format(), "its columns are time, Force x, Force y; they must be time, x, y"),
         (",Position [mm],\ntime,x,y", Format("cm"), "its header gives x in mm, not in cm; set unit=mm"),
         (",L,L,R,R\ntime,x,y,x,y", Format(), r"its columns x and x .columns 2 and 4. could both be x; rename one"),
+        *(
+            (f"time,{names}", Format(), f"its columns are time, {names.replace(',', ', ')}; they must be time, x, y")
+            for names in (
+                "F_x,F_y,T_x,T_y",
+                "M_x,M_y",
+                "tau_x,tau_y",
+                "B_x,B_y",
+                "forces_x,forces_y",
+                "ori_x,ori_y",
+                "velocities x,velocities y",
+                "gravity.x,gravity.y",
+                "accelerometerX,accelerometerY",
+                "Kraft x,Kraft y",
+            )
+        ),
         ("Frame,Sub Frame,TX,TY\n,,mm,mm", Format(), "its columns are Frame, Sub Frame, TX, TY; they must be time, x"),
         ("TIME_STAMP,2019-11-05,6634.79\nMARKER_NAMES,pen", Format(), "its columns are MARKER_NAMES, pen; they must"),
         ("time\tx y", Format(), "its columns are time, x y; they must be time, x, y"),
