@@ -183,7 +183,7 @@ class _Tree:
                 has = f"joints {', '.join(zero)} have" if len(zero) > 1 else f"joint '{zero[0]}' has"
                 self.mended.append(f"{has} the {quantity} limit 0, which is taken for none")
         ends = [self.between(a, b)[:3, 3] for a, b in zip(moving, [*moving[1:], end], strict=True)]
-        bodies, doubts = zip(*(self.body(name, set(moving), tip) for name, tip in zip(moving, ends, strict=True)))
+        bodies, doubts = zip(*self._bodies(moving, ends))
         if off := [f"link {link.name} by {100 * share:.2g} %" for link, share in zip(bodies, doubts) if share > 1e-6]:
             self.mended.append(
                 f"{', '.join(off)}: no rigid body has this inertia (a moment exceeds the sum of the other two, or is "
@@ -216,13 +216,6 @@ class _Tree:
                     f"joint '{_name(node)}' follows {followed} (mimic), but an arm's joints are "
                     f"free; end the arm before it, at {_link(node, 'parent')}"
                 )
-        bare = [
-            name
-            for name in (_link(node, "child") for node in chain)
-            if all(self.links[part].find("inertial") is None for part, _ in self.carried(name, moving))
-        ]
-        if len(bare) > 1:
-            raise ValueError(f"links {', '.join(bare)} move but have no <inertial>; give each a mass")
         names = set(map(_name, chain))
         for part in [part for name in moving for part, _ in self.carried(name, moving)]:
             mimic, kind = self.into[part].find("mimic"), self.into[part].get("type")
@@ -274,6 +267,20 @@ class _Tree:
             yield part, frame
             still = [child for child in self.children[part] if child not in moving]
             waiting += [(child, self._behind(self.into[child], frame)) for child in reversed(still)]
+
+    def _bodies(self, moving: Sequence[str], tips: Sequence[Array]) -> list[tuple[Link, float]]:
+        """All of :meth:`body`. Says what is wrong with the first that is none, and which others are none."""
+        found, wrong = [], dict[str, ValueError]()
+        for name, tip in zip(moving, tips, strict=True):
+            try:
+                found.append(self.body(name, set(moving), tip))
+            except ValueError as error:
+                wrong[name] = error
+        if wrong:
+            first, *others = wrong
+            more = f"; {', '.join(others)} cannot be used, either" if others else ""
+            raise ValueError(f"{wrong[first]}{more}")
+        return found
 
     def body(self, name: str, moving: set[str], tip: Array) -> tuple[Link, float]:
         """One rigid body of a moving link and all it carries, about their common centre of mass, and by which share
