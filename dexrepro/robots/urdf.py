@@ -30,6 +30,8 @@ FOREIGN = {
 SEMANTIC = {"group", "group_state", "end_effector", "virtual_joint", "disable_collisions"}  # of an SRDF file of MoveIt
 MESHES = (".stl", ".obj", ".dae")  # what the engine reads
 NEEDED = ("value", "ixx", "iyy", "izz", "size", "radius", "length")  # of an element that is there, as in ROS
+TAGS = {"link", "joint", "parent", "child", "origin", "axis", "limit", "mimic", "inertial", "mass", "inertia", "visual",
+        "collision", "geometry"}  # fmt: skip
 LONGEST = 255  # letters of a name; PyBullet ends the process for some thousand bytes
 LARGEST = 10.0  # m; what is longer in an arm's file is likely to be in another unit
 DENSEST = 1e8  # kg/m^3, 5000 times gold; so dense is a ball whose mass is in g, its moment in kg m^2
@@ -103,7 +105,7 @@ def _parsed(path: Path) -> xml.Element:
         raise ValueError(f"it takes in another file, '{file}', which is not read; put the text of that in its place")
 
     parser.StartElementHandler, parser.EndElementHandler = start, builder.end
-    parser.ExternalEntityRefHandler = elsewhere
+    parser.ExternalEntityRefHandler, parser.CharacterDataHandler = elsewhere, builder.data
     try:
         parser.Parse(text.rstrip().encode(), True)
     except expat.ExpatError as error:
@@ -116,6 +118,9 @@ def _parsed(path: Path) -> xml.Element:
         "${" in value or "$(" in value for part in parts for value in part.attrib.values()
     ):
         raise ValueError("it still holds xacro; turn it into URDF first: xacro FILE > arm.urdf")
+    for node in [*robot, *parts]:
+        if node.tag not in TAGS and (right := node.tag.lower()) in TAGS:
+            raise ValueError(f"line {getattr(node, 'line', 0)}: <{node.tag}> must be <{right}>, in small letters")
     if robot.find("link") is None and any(child.tag in SEMANTIC for child in robot):
         raise ValueError("it is an SRDF file of MoveIt, which holds no links; name the URDF file that it is about")
     return robot
@@ -442,6 +447,17 @@ def _floats(node: xml.Element | None, attribute: str, default: str) -> tuple[flo
     return values
 
 
+def _check_attributes(node: xml.Element | None, *names: str) -> None:
+    """Refuse an element that says something, as SDF files do, but nothing in these attributes."""
+    if (
+        node is not None
+        and not node.attrib.keys() & {*names}
+        and (node.attrib or len(node) or (node.text or "").strip())
+    ):
+        line = getattr(node, "line", 0)
+        raise ValueError(f"line {line}: <{node.tag}> has no {' or '.join(names)}; write its numbers there")
+
+
 def _pose(node: xml.Element) -> Pose:
     origin = node.find("origin")
     if origin is not None and "quat_xyzw" in origin.attrib:
@@ -449,11 +465,13 @@ def _pose(node: xml.Element) -> Pose:
         raise ValueError(
             f'{_place(origin, "quat_xyzw")} is not read; write rpy="{" ".join(f"{x:.9g}" for x in turn)}" in its place'
         )
+    _check_attributes(origin, "xyz", "rpy")
     return Pose(_floats(origin, "xyz", "0 0 0"), _floats(origin, "rpy", "0 0 0"))  # type: ignore[arg-type]
 
 
 def _axis(node: xml.Element) -> Array:
     """Unit vector (3,) of a joint's axis."""
+    _check_attributes(node.find("axis"), "xyz")
     axis = np.array(_floats(node.find("axis"), "xyz", "1 0 0"))
     if not 1e-12 < math.hypot(*axis) < 1e12:
         raise ValueError(
