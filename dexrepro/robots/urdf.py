@@ -33,6 +33,7 @@ NEEDED = ("value", "ixx", "iyy", "izz", "size", "radius", "length")  # of an ele
 TAGS = {"link", "joint", "parent", "child", "origin", "axis", "limit", "mimic", "inertial", "mass", "inertia", "visual",
         "collision", "geometry"}  # fmt: skip
 LONGEST = 255  # letters of a name; PyBullet ends the process for some thousand bytes
+TURN = 2 * math.pi + 0.01  # rad; what turns by more is likely to be in degrees
 LARGEST = 10.0  # m; what is longer in an arm's file is likely to be in another unit
 DENSEST = 1e8  # kg/m^3, 5000 times gold; so dense is a ball whose mass is in g, its moment in kg m^2
 ROUNDING = 0.05
@@ -200,6 +201,10 @@ class _Tree:
             raise ValueError(f"link '{last.name}' has no inertia about joint '{joints[-1].name}'; give it one")
         stand = [shape for part, frame in self.carried(root, set(moving)) for shape in self.shapes(part, frame)]
         x, y, z, *turn = base
+        if max(map(abs, turn), default=0.0) > TURN:
+            self.mended.append(
+                f"base = {[*base]} turns by {max(turn, key=abs):g} rad; its angles are in rad, not degrees"
+            )
         placed = Pose((x, y, z), tuple(turn) or (0.0, 0.0, 0.0))  # type: ignore[arg-type]
         tip = Pose.of(self.between(moving[-1], end))
         return Arm(self.path.stem, joints, bodies, end=tip, base=placed, base_shapes=tuple(stand))
@@ -389,7 +394,7 @@ def _doubts(above: Sequence[xml.Element], bodies: Sequence[Link]) -> Iterator[st
     """What can be simulated but no arm has, so that another unit than rad, m or kg is likely."""
     for node in above:
         turn = _floats(node.find("origin"), "rpy", "0 0 0")
-        if max(map(abs, turn)) > 2 * math.pi + 0.01:
+        if max(map(abs, turn)) > TURN:
             yield f"joint '{_name(node)}' has the rpy {' '.join(f'{x:g}' for x in turn)}; it is in rad, not in degrees"
         if (away := math.hypot(*_floats(node.find("origin"), "xyz", "0 0 0"))) > LARGEST:
             yield f"joint '{_name(node)}' stands {away:g} m from what carries it; lengths are in m"

@@ -106,6 +106,11 @@ def test_limits_and_base_are_those_given(path: Path) -> None:
     assert forward(arm, [0.0, 0.0])[0] == pytest.approx([1 - moved[1], moved[0], moved[2]])
 
 
+def test_a_base_that_seems_to_be_in_degrees_is_said(path: Path) -> None:
+    with pytest.warns(UserWarning, match=r"base = .1, 0, 0, 0, 0, -90. turns by -90 rad; its angles are in rad"):
+        from_urdf(str(path), "tip", base=[1, 0, 0, 0, 0, -90])
+
+
 def test_what_the_link_named_root_hangs_on_is_left_out(path: Path) -> None:
     whole, part = from_urdf(str(path), "tip"), from_urdf(str(path), "tip", root="base")
     moved = forward(whole, [0.3, 0.2])[0] - (0.1, 0.2, 0.3)
