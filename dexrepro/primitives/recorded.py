@@ -120,8 +120,9 @@ def _check(time: Array, position: Array, lines: Array, tick: str | None) -> None
         raise ValueError(f"it has samples of {len(time)} instants; there must be at least {FEWEST}")
     steps = np.diff(time)
     if (late := np.flatnonzero(steps <= 0)).size:
-        same = " (duplicates=drop keeps the first of several samples of one instant)" if steps[late[0]] == 0 else ""
-        raise ValueError(f"its time does not increase at line {lines[late[0] + 1]}{same}")
+        remedy = " (duplicates=drop keeps the first of several samples of one instant)" if steps[late[0]] == 0 else ""
+        remedy = "; give each of its recordings a file of its own" if time[late[0] + 1] <= 0 < late[0] else remedy
+        raise ValueError(f"its time does not increase at line {lines[late[0] + 1]}{remedy}")
     total, usual = time[-1], np.median(steps)
     long = steps > PAUSE * np.maximum(usual, (total - steps) / max(len(steps) - 1, 1))
     if steps[long].sum() > total / 3:

@@ -430,6 +430,7 @@ def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
         ([*ROWS[:4], "2.4,3", *ROWS[5:]], "time,x,y\n", "line 6 holds '2.4,3'"),
         ([*ROWS[:4], "2.4,3", *ROWS[5:]], "", "line 5 has 2 numbers"),
         ([*ROWS[:4], ROWS[3], *ROWS[5:]], "time,x,y\n", "does not increase at line 6"),
+        ([*ROWS, *ROWS], "time,x,y\n", "does not increase at line 12; give each of its recordings a file of its own"),
         (ROWS[:7], "time,x,y\n", "has 7 samples; there must be at least 8"),
         (["# x"], "", "has 0 samples"),
         ([], "time,x,y\n", "it has no row of numbers parted by commas, semicolons, tabs or blanks"),
