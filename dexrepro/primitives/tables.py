@@ -184,7 +184,7 @@ def is_entry(text: str) -> bool:
 def _number(entry: str) -> float | None:
     """A finite number, its decimal mark a point or a comma; None for what is none."""
     with contextlib.suppress(ValueError):
-        if math.isfinite(number := float(entry.replace(",", "."))):
+        if "_" not in entry and math.isfinite(number := float(entry.replace(",", "."))):  # 10_59_58 is a clock's
             return number
     return None
 

@@ -451,6 +451,11 @@ def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
         ([ROWS[0], *(f"10:00:0{k},{k},1" for k in range(9))], "time,x,y\n", "line 3 holds .*its time must be a number"),
         ([f"23:59:5{k + 6 if k < 4 else 0},{k},1" for k in range(9)], "time,x,y\n", "time does not increase at line 6"),
         (["2.0,NA,NA", *ROWS[1:]], "time,x,y\n", "line 2 holds '2.0,NA,NA': every entry must be a finite number"),
+        (
+            [f"10_59_5{k},{k},1" for k in range(9)],
+            "time,x,y\n",
+            "line 2 holds '10_59_50,0,1': every entry must be a fin",
+        ),
         ([f"{k}.0D-1,1.0D0,1" for k in range(9)], "time,x,y\n", "line 2 holds '0.0D-1,"),
         (
             [f'"{k}",{row}' for k, row in enumerate(ROWS)],
