@@ -24,6 +24,7 @@ FEWEST = 8
 LONG = 60.0  # s; a file that lasts longer with steps of a second or more has other stamps than seconds
 SHORT = 0.01  # s; no movement of a hand
 WIDE = 2.0  # m; neither
+NARROW = 0.004  # m; as small becomes what a hand has drawn if its lengths are in m and taken to be in cm
 FAR = 1e7  # m; as far as from the equator to a pole
 PAUSE = 10.0  # times the usual step; where such pauses take a third of the time, clocks have jumped
 csv.field_size_limit(2**31 - 1)  # by default 128 kB, which a note or a picture in base64 beside the path exceeds
@@ -185,4 +186,6 @@ def demonstrations(
     for name, path in zip(found, paths, strict=True):
         if (span := float(np.ptp(path, axis=0).max())) > WIDE:
             warnings.warn(f"'{name}' spans {span:.3g} m; set unit= if no hand went as far as that", stacklevel=2)
+        if span < NARROW and style.unit is None:
+            warnings.warn(f"'{name}' spans {span:.3g} m; set unit= if the hand went further than that", stacklevel=2)
     return [paths[k % len(paths)] for k in range(count)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from time import process_time
 
@@ -587,6 +588,15 @@ def test_a_path_that_no_hand_can_have_gone_is_read_with_a_warning(tmp_path: Path
     pixels = write(tmp_path, [f"0.{k},{100 * k},{k}" for k in range(8)])
     with pytest.warns(UserWarning, match="path.csv' spans 7 m; set unit= if no hand went as far as that"):
         demonstrations(pixels, 1, 20, Format(), axes=2, otherwise="cm")
+
+
+def test_a_path_in_metres_that_is_taken_for_one_in_centimetres_is_read_with_a_warning(tmp_path: Path) -> None:
+    metres = write(tmp_path, [f"0.{k},{0.02 * k},{k % 2}e-2" for k in range(8)])
+    with pytest.warns(UserWarning, match="path.csv' spans 0.0014 m; set unit= if the hand went further than that"):
+        demonstrations(metres, 1, 20, Format(), axes=2, otherwise="cm")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        demonstrations(metres, 1, 20, Format("cm"), axes=2, otherwise="cm")
 
 
 SQUARE = ["0,0", "4,0", "4,2", "0,2"]
