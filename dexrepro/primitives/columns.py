@@ -42,6 +42,7 @@ NO_PLACE = {"orientation", "rotation", "rot", "angular", "angle", "euler", "quat
             "angles", "rotvec", "tilt", "normal", "scale", "velocities", "speeds", "rate", "geschwindigkeit",
             "accelerations", "accelerometer", "beschleunigung", "gravity", "magnetic", "forces", "kraft", "torques",
             "tau", "moments", "momentum", "impulse", "stiffness", "errors", "sd", "sigma"}  # fmt: skip
+CENTRE = {"center", "centre"}  # of gravity: this is a place
 KINDS = {word for word in PLACE | NO_PLACE if len(word) > 1}  # of columns, in a row above their names
 NAME = re.compile(  # neither a number nor prose
     r"(?!(in|of|for|at|per|the|over|from|versus|and|und)\b|.*\b(is|are|by|to)\b)[^\W\d]", re.IGNORECASE
@@ -81,7 +82,8 @@ def ranked(wanted: str, names: Sequence[str]) -> list[tuple[bool, bool, bool, bo
     result, (plain, often, never) = [], NAMES[wanted]
     for column, name in enumerate(names):
         first, words = {*words_in(name)[:1]}, {*words_in(name)}
-        if words & (plain | often) and not words & NO_PLACE and not first & never:
+        other = first & never | words & NO_PLACE - ({"gravity"} if words & CENTRE else set())
+        if words & (plain | often) and not other:
             more = words - plain - often - PLACE - UNITS | words & {"min"}
             result.append((not words & plain, bool(more), not PLACE & words, len(words) > 1, column))
     return sorted(result)

@@ -102,6 +102,7 @@ COMMAS = rows("{t};{x};{y}").replace(".", ",")
         ",,Rotation,Rotation,Rotation,Position,Position,Error\nFrame,Time,X,Y,Z,X,Y,\n" + rows("7,{t},5,5,5,{x},{y},1"),
         ",Velocity (m/s),,Position (m),\nt,x,y,x,y\n" + rows("{t},5,5,{x},{y}"),
         "Lab 5, position of pen, Ann\ntime,x,y\n" + PLAIN,
+        "time,center of gravity x (m),CentreOfGravityY (m),gravity x,gravity y\n" + rows("{t},{x},{y},0,9"),
         "velocity,,\nforce,5,\ntime,x,y\n" + PLAIN,
         ",Position,\ns,m,m\ntime,x,y\n" + PLAIN,
         "LabVIEW Measurement\nDate\t2024/05/01\t2024/05/01\t2024/05/01\nX_Dimension\tTime\tTime\tTime\n"
@@ -275,6 +276,7 @@ def test_units_come_from_the_header_or_from_who_knows_better(
                 "ori_x,ori_y",
                 "velocities x,velocities y",
                 "gravity.x,gravity.y",
+                "v center of gravity x,v center of gravity y",
                 "accelerometerX,accelerometerY",
                 "Kraft x,Kraft y",
             )
