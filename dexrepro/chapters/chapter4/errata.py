@@ -123,7 +123,9 @@ ERRATA = (
         "Delta, gamma, eta, n, beta of (4.6), T, Y^U, m, c and the duration of the motions are not printed. Delta and "
         "eta decide several rankings: see the rows of one common gain and those of equal effective gain in Table T4.A.",
         "Chosen as stated in the configuration.",
-        evidence=tuple(f"{S}.{case}.rmse_mm" for case in ("broad20", "rbf10", "common_rbf10", "fuzzy", "common_fuzzy")),
+        evidence=tuple(
+            f"{S}.{case}.rmse_mm" for case in ("broad20", "rbf_tuned", "common_rbf10", "fuzzy", "common_fuzzy")
+        ),
     ),
     gap(
         "E4.23",

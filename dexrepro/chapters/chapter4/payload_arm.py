@@ -41,7 +41,7 @@ def motions(config: Config) -> Iterator[tuple[int, Sampled]]:
 
 def scene(config: Config) -> World:
     """The right arm at rest with its end point at X_0 and the payload hanging from it."""
-    world = World(step=config.step, gravity=(0.0, 0.0, -9.81), perturbation=config.perturbation)
+    world = World(step=config.step, perturbation=config.perturbation)
     arm = baxter("right")
     world.add_arm("arm", arm, position=nearest(arm, config.task.posture, config.task.home, task="position", settle=400))
     if config.payload:
@@ -71,14 +71,16 @@ class Pilot:
         return self.command(sense)
 
     def state(self) -> tuple[float, ...]:
-        """Error (3), usage (3), E, nodes, largest feature, for the columns of ``STATE``."""
+        """Error (3), usage (3), E, nodes, largest feature, |G|^2, for the columns of ``STATE``."""
         told = {**UNTOLD, **report(self.law)}
-        return (*self.drive.error.tolist(), *told["usage"], told["share"], told["nodes"], told["activation"])
+        network = told["nodes"], told["activation"], told["feature_energy"]
+        return (*self.drive.error.tolist(), *told["usage"], told["share"], *network)
 
 
 #: What a law is taken to report where it reports nothing.
-UNTOLD: dict[str, Any] = {"usage": (math.nan,) * 3, "share": 1.0, "nodes": 0, "activation": 0.0}
+UNTOLD: dict[str, Any] = {"usage": (math.nan,) * 3, "share": 1.0, "nodes": 0, "activation": 0.0, "feature_energy": 0.0}
 STATE: dict[str, Any] = {"error": slice(0, 3), "usage": slice(3, 6), "share": 6, "nodes": 7, "activation": 8}
+STATE["feature_energy"] = 9
 
 
 def simulate(config: Config) -> Recording:

@@ -48,8 +48,16 @@ def measure(recording: Recording, config: Config) -> Metrics:
         "smallest_share": float(recording["share"].min()),
         "most_nodes": int(nodes.max()),
         "hand_tilt": _hand_tilt(recording["position"][late][::50]),
+        **_gain(recording["feature_energy"][late], config),
         **_reach_of_lattice(recording, config),
     }
+
+
+def _gain(energy: Array, config: Config) -> Metrics:
+    """Mean |G|^2 on the trajectories, and what of the effective gain aimed at that gives."""
+    if config.network is None:
+        return {}
+    return {"feature_energy": float(energy.mean()), "gain_ratio": float(energy.mean()) / config.feature_energy}
 
 
 def _hand_tilt(positions: Array) -> float:

@@ -119,7 +119,7 @@ METHODS = {
     "broad30": (r"broad, $\Theta$ = 30", "extra1"),
     "broad50": (r"broad, $\Theta$ = 50", "extra2"),
     "rbf2": (r"RBF, $\eta$ = 2", "plain"),
-    "rbf10": (r"RBF, $\eta$ = 10", "rival"),
+    "rbf_settled": ("RBF, tuned", "rival"),
     "fuzzy": ("fuzzy", "extra3"),
 }
 ROMAN = ("I", "II", "III", "IV")
@@ -218,7 +218,7 @@ def arm(recording: Recording, config: Config) -> Drawing:
 def paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawing:
     """Fig. 4.5: the ellipse by three methods, and the four training strokes of the book's."""
     figure, axes = style.subplots(2, 4, height=3.4)
-    shown = [case for case in ("rbf2", "rbf10", "fuzzy", "broad20") if case in recordings]
+    shown = [case for case in ("rbf2", "rbf_settled", "fuzzy", "broad20") if case in recordings]
     for panel, case in zip(axes[0], shown):
         label, line = METHODS[case]
         _, now = run_of(recordings[case])
@@ -240,7 +240,7 @@ def paths(recordings: Recordings, metrics: AllMetrics, config: Config) -> Drawin
 
 
 GROUPS = {"thresholds of the broad network": ("broad20", "broad30", "broad50"),
-          "broad network and its rivals": ("broad20", "rbf10", "fuzzy", "rbf2")}  # fmt: skip
+          "broad network and its rivals": ("broad20", "rbf_settled", "fuzzy", "rbf2")}  # fmt: skip
 
 
 def envelope(time: Array, size: Array) -> Array:
