@@ -111,6 +111,12 @@ def minimum_jerk(u: ArrayLike) -> Array:
     return share**3 * (10 + share * (6 * share - 15))
 
 
+def minimum_jerk_rates(u: Array, duration: float) -> tuple[Array, Array, Array]:
+    """``minimum_jerk`` at times u in [0, 1] of a duration [s], with its first and second derivative [1/s, 1/s^2]."""
+    rate = (30 * u**2 - 60 * u**3 + 30 * u**4) / duration
+    return 10 * u**3 - 15 * u**4 + 6 * u**5, rate, (60 * u - 180 * u**2 + 120 * u**3) / duration**2
+
+
 def quintic(time: float, duration: float) -> tuple[float, float]:
     """``minimum_jerk`` in plain floats, for control loops: the share and its rate [1/s] at a time [s]."""
     u = min(max(time / duration, 0.0), 1.0)
@@ -123,8 +129,6 @@ def via_points(points: Sequence[ArrayLike], times: Sequence[float], dt: float) -
     for start, end, duration in zip(points[:-1], points[1:], times, strict=True):
         s = (np.arange(round(duration / dt)) * dt / duration)[:, None]
         span = np.asarray(end, dtype=float) - np.asarray(start, dtype=float)
-        shape = 10 * s**3 - 15 * s**4 + 6 * s**5
-        rate = (30 * s**2 - 60 * s**3 + 30 * s**4) / duration
-        bend = (60 * s - 180 * s**2 + 120 * s**3) / duration**2
-        parts.append((start + shape * span, rate * span, bend * span))
+        share, rate, bend = minimum_jerk_rates(s, duration)
+        parts.append((start + share * span, rate * span, bend * span))
     return Sampled(dt, *(np.concatenate(columns) for columns in zip(*parts)))

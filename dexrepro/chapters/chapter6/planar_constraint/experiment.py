@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from dexrepro.arrays import Array, Rng
 from dexrepro.chapters.chapter6 import learning, plane
+from dexrepro.control.motion import minimum_jerk_rates
 from dexrepro.experiment import AllMetrics, Config, Metrics, Recording
 from dexrepro.primitives.constrained import Path, Reference
 from dexrepro.primitives.dmp import Trajectory
@@ -63,12 +64,12 @@ def _strayed(reference: Reference, time: Array, size: float) -> Reference:
     if not size:
         return reference
     span = time[-1] - time[0]
-    u = (time[:, None] - time[0]) / span
+    share, rate, acceleration = minimum_jerk_rates((time[:, None] - time[0]) / span, span)
     shift = np.array([size, 0.0])
     return Reference(
-        reference.position + shift * (10 * u**3 - 15 * u**4 + 6 * u**5),
-        reference.velocity + shift * (30 * u**2 - 60 * u**3 + 30 * u**4) / span,
-        reference.acceleration + shift * (60 * u - 180 * u**2 + 120 * u**3) / span**2,
+        reference.position + shift * share,
+        reference.velocity + shift * rate,
+        reference.acceleration + shift * acceleration,
     )
 
 
