@@ -129,6 +129,6 @@ def via_points(points: Sequence[ArrayLike], times: Sequence[float], dt: float) -
     for start, end, duration in zip(points[:-1], points[1:], times, strict=True):
         s = (np.arange(round(duration / dt)) * dt / duration)[:, None]
         span = np.asarray(end, dtype=float) - np.asarray(start, dtype=float)
-        share, rate, bend = minimum_jerk_rates(s, duration)
+        share, rate, bend = minimum_jerk_rates(s, duration)  # type: ignore[arg-type]
         parts.append((start + share * span, rate * span, bend * span))
     return Sampled(dt, *(np.concatenate(columns) for columns in zip(*parts)))
