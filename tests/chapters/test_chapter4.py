@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from dexrepro import chapters
+from dexrepro.baselines import stored_values
 from dexrepro.cases import experiment_cases
 from dexrepro.chapters.chapter4 import measures, payload_arm, two_link
 from dexrepro.config import compose_chapter
@@ -46,6 +47,17 @@ def test_one_network_has_one_gain_beside_the_one_for_all():
             found.setdefault(str(sorted(network["basis"].items())), set()).add(float(network["gain"]))
     assert found
     assert not {basis: gains for basis, gains in found.items() if len(gains) > 1}
+
+
+def test_networks_that_are_compared_at_equal_effective_gain_have_it_and_none_searched_has_more():
+    stored = stored_values("4")
+    ratios = [
+        stored[f"payload_transfer.{name}.gain_ratio"] for name in ("reuse", "rbf_medium", "rbf_tuned", "constant")
+    ]
+    gains = [stored[f"skill_reuse.{name}.effective_gain"] for name in ("broad20", "broad30", "broad50", "constant")]
+    assert ratios == pytest.approx([1.0] * 4, rel=0.06)
+    assert gains == pytest.approx([1000.0] * 4, rel=0.06)
+    assert all(stored[f"skill_reuse.{name}.effective_gain"] <= 1000 for name in ("rbf_tuned", "rbf_settled"))
 
 
 def test_gravity_torque_of_the_arm_in_the_world_is_the_known_one():

@@ -19,7 +19,7 @@ FIGURES = {
     ),
     "4.12": Figure(
         "Tracking error of the nine trajectories of phase III: the broad network with what it learned in phases I and "
-        "II against the tuned of the fixed networks of 16384 nodes with the same training, and the prescribed bound; "
+        "II against the fixed network of 16384 nodes with the width of least error, likewise trained, and the bound; "
         "below, the error of each trajectory for all methods, an integrator (one constant node) among them. Simulated "
         "Baxter arm with gravity compensation for the bare arm. The book shows the error of both methods.",
         "Error over time of two networks within the bound, and bars of the error of each trajectory for all methods.",

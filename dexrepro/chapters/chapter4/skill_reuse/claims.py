@@ -186,7 +186,7 @@ CLAIMS = (
         "C4.11",
         "Only some weights become large while the others stay near zero.",
         every(*(less(f".{case}.large_weight_share", 0.5) for case in ("broad20", "broad30"))),
-        control=less(".rbf_tuned.large_weight_share", 0.5),
+        control=less(".rbf_settled.large_weight_share", 0.5),
         credits="partial persistent excitation, by which nodes far from the orbit are not activated",
         readings={
             "large: above a fifth of the largest": every(
