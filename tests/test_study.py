@@ -185,13 +185,15 @@ def test_a_study_ends_when_every_claim_is_decided(folder: Path) -> None:
 def test_what_is_decided_is_drawn_no_more(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     chapter = chapters.load("90")
     seldom = Claim("C90.02", "90.10", "it stays small", less("decay.gain2.largest", 0.5))
-    monkeypatch.setattr(chapters, "load", lambda _: replace(chapter, claims=(chapter.claims[0], seldom)))
+    always = replace(chapter.claims[0], control=less("decay.gain1.final", "decay.plain.final"))
+    monkeypatch.setattr(chapters, "load", lambda _: replace(chapter, claims=(always, seldom)))
     monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
     path = sampling.run("90", "decay", None, RESULTS)
     rows = {key: (row["word"], row["samples"]) for key, row in read_json(path)["claims"].items()}
     assert rows == {"C90.01": ("robust", 26), "C90.02": ("fragile", 16)}
+    assert read_json(path)["claims"]["C90.01"]["control_samples"] == 16, "it has been seen, and decides nothing"
     cases = [set(entry["cases"]) for entry in samples.read_samples(samples.samples_file(path))]
-    assert cases == [{"plain", "fast", "gain2"}] * 16 + [{"plain", "fast"}] * 10
+    assert cases == [{"plain", "fast", "gain1", "gain2"}] * 16 + [{"plain", "fast"}] * 10
     monkeypatch.setattr(chapters, "load", lambda _: chapter)
     assert read_json(sampling.run("90", "decay", 28, RESULTS))["claims"]["C90.03"]["samples"] == 28, "the rest is added"
     entries = [entry for entry in sampling.kept_samples("90", "decay", RESULTS).values() if len(entry["cases"]) == 4]

@@ -65,7 +65,8 @@ def noticed(claim: Claim) -> str:
     if claim.get("control_margin") is not None:
         row = claim.get("study") or {}
         fails = row.get("control_fails")
-        draws = "" if fails is None else f" (it fails in {fails} of {row['samples']} draws)"
+        count = row.get("control_samples", row.get("samples"))
+        draws = "" if fails is None else f" (it fails in {fails} of {count} draws)"
         return f"{'yes: the control fails' if is_severe(claim) else 'no: the control holds as well'}{draws}"
     if claim.get("no_control"):
         return f"no control can exist: {claim['no_control']}"

@@ -84,11 +84,15 @@ def _rounded(numbers: Mapping[str, float | None]) -> dict[str, float | None]:
     return {key: value if value is None else float(f"{value:.6g}") for key, value in numbers.items()}
 
 
-def needed_cases(claims: Sequence[Claim], cases: Iterable[str], only: Cases = ()) -> list[str]:
-    """The cases that the claims are about, all as soon as a claim needs a number over several; of them only some."""
+def needed_cases(claims: Iterable[Claim], cases: Iterable[str], only: Cases = (), deciding: bool = False) -> list[str]:
+    """The cases that the claims are about, all as soon as a claim needs a number over several; of them only some.
+
+    deciding: those of the predicates alone, on which a claim's word rests, without controls and other readings.
+    """
     if only:
         return [case for case in cases if case in only]
-    about, over_several = cases_in(name for claim in claims for name in claim.metrics)
+    tests = (test for claim in claims for test in ((claim.predicate,) if deciding else claim.predicates) if test)
+    about, over_several = cases_in(name for test in tests for name in test.metrics)
     return [case for case in cases if over_several or case in about]
 
 

@@ -68,8 +68,9 @@ def run(
 ) -> Path:
     """Evaluate what is missing of ``count`` samples, store all there are with their summary; returns its path.
 
-    count: None takes as many as decide every claim, 100 at most. ``update`` renews the study that is shipped. engine:
-    of the samples made now. only: run these cases alone, for the claims about no other, with a summary of their own.
+    count: None takes as many as decide every claim, 100 at most; after the first look, where controls have been seen,
+    those cases alone that decide. ``update`` renews the study that is shipped. engine: of the samples made now. only:
+    run these cases alone, for the claims about no other, with a summary of their own.
     Raises InputError where a summary of more samples, of another configuration, would be replaced, or where the engine
     is not known to decide every claim as that of the baselines does, and SamplesFailed, at the end, where a sample
     could not be made.
@@ -86,7 +87,9 @@ def run(
     kept = kept_samples(chapter, experiment, results, only=only)
     with Pool(workers) as pool:
         for look in (0, *([count] if count is not None else LOOKS)):  # first at what there is
-            wanted = tuple(case for case in samples.needed_cases(undecided, names) if not only or case in only)
+            deciding = count is None and look > LOOKS[0]
+            needed = samples.needed_cases(undecided, names, deciding=deciding)
+            wanted = tuple(case for case in needed if not only or case in only)
             lacking = [i for i in range(look) if i not in kept or not {*wanted} <= kept[i]["cases"].keys()]
             if not lacking and (look or not kept):
                 continue
@@ -162,8 +165,8 @@ def kept_samples(
 ) -> dict[int, dict[str, Any]]:
     """What the samples there are, shipped or made here, hold of the present simulations, in the order of index.
 
-    A sample counts where it has all cases of a claim. One of another engine counts as long as the cross-check shows
-    that it decides every claim alike.
+    A sample counts where it has all cases that decide a claim. One of another engine counts as long as the cross-check
+    shows that it decides every claim alike.
     """
     found: dict[int, dict[str, Any]] = {}
     for entry in samples.all_samples(experiment, results):
@@ -178,6 +181,7 @@ def kept_samples(
         if len(rows) >= len(before["cases"]):
             found[index] = {**entry, "values": draw(chapter, experiment, index)[0], "cases": rows}
     names = list(draw(chapter, experiment, 0)[1]["cases"])
-    about = [{*samples.needed_cases([claim], names)} for claim in chapters.load(chapter).claims_of(experiment)]
+    claims = chapters.load(chapter).claims_of(experiment)
+    about = [{*samples.needed_cases([claim], names, deciding=True)} for claim in claims if claim.predicate]
     useful = (index for index, entry in found.items() if any(cases <= entry["cases"].keys() for cases in about))
     return {index: found[index] for index in sorted(useful)}

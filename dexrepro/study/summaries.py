@@ -56,6 +56,7 @@ def summary(chapter: str, experiment: str, entries: Sequence[Mapping[str, Any]])
             "low": low, "high": high, "word": robustness(holds, len(pairs)),
             "undefined": sum(any(found.values[name] is None for name in names) for found, _ in pairs),
             "control_fails": sum(margin <= 0 for margin in controls) if controls else None,
+            "control_samples": len(controls),
             "parameter": parameter, "correlation": correlation, "median_margin": float(np.median(margins)),
             "quantiles": np.quantile(margins, QUANTILES).tolist(), "least": float(margins.min()),
             "boundary": _boundary(parameter, pairs),

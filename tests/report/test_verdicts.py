@@ -56,8 +56,8 @@ def test_each_verdict_counts_apart_and_ours_beside_them() -> None:
 def test_a_control_that_holds_is_said_to_hold() -> None:
     assert verdicts.noticed(claim(**SEVERE)) == "yes: the control fails"
     assert verdicts.noticed(claim(control="b < a", control_margin=0.1)).startswith("no")
-    drawn = {"holds": 30, "samples": 40, "control_fails": 13}
-    assert verdicts.noticed(claim(**SEVERE, study=drawn)) == "yes: the control fails (it fails in 13 of 40 draws)"
+    drawn = {"holds": 30, "samples": 40, "control_fails": 13, "control_samples": 16}
+    assert verdicts.noticed(claim(**SEVERE, study=drawn)) == "yes: the control fails (it fails in 13 of 16 draws)"
     assert "identity" in verdicts.noticed(claim(no_control="an identity"))
 
 
