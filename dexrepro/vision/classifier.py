@@ -80,8 +80,8 @@ class GraspClassifier:
         by_conv1 = _unpooled(by_pooled, conv1)
         rows1, rows2 = by_conv1.reshape(-1, 16), by_conv2.reshape(-1, 32)
         return scores, [
-            (rows1.T @ columns1).reshape(first.shape), rows1.sum(0),
-            (rows2.T @ columns2).reshape(second.shape), rows2.sum(0),
+            _by_channel(rows1.T @ columns1, first.shape), rows1.sum(0),
+            _by_channel(rows2.T @ columns2, second.shape), rows2.sum(0),
             by_hidden.T @ flat, by_hidden.sum(0),
             by_scores.T @ hidden, by_scores.sum(0),
         ]  # fmt: skip
@@ -121,22 +121,36 @@ class Adam:
 
 
 def _convolved(inputs: Single, weight: Single, offset: Single) -> tuple[Single, Single]:
-    """Rectified convolution (n, h - 4, w - 4, out) of inputs (n, h, w, in), and the windows it took, one a row."""
+    """Rectified convolution (n, h - 4, w - 4, out) of inputs (n, h, w, in), and the windows it took, one a row.
+
+    In a row the channels of one pixel are neighbours, as in the inputs: whole lines of a window are copied at once.
+    """
     windows = np.lib.stride_tricks.sliding_window_view(inputs, (KERNEL, KERNEL), axis=(1, 2))
-    columns = windows.reshape(-1, weight[0].size)
-    result = columns @ weight.reshape(len(weight), -1).T + offset
+    columns = windows.transpose(0, 1, 2, 4, 5, 3).reshape(-1, weight[0].size)
+    result = columns @ _by_pixel(weight).T
+    result += offset
     return np.maximum(result, 0, out=result).reshape(*windows.shape[:3], -1), columns
+
+
+def _by_pixel(weight: Single) -> Single:
+    """Weights (out, in, 5, 5) as (out, 5 x 5 x in), in the order of the windows."""
+    return weight.transpose(0, 2, 3, 1).reshape(len(weight), -1)
+
+
+def _by_channel(gradient: Single, shape: tuple[int, ...]) -> Single:
+    """The inverse: (out, 5 x 5 x in) as weights of a shape (out, in, 5, 5)."""
+    return gradient.reshape(shape[0], KERNEL, KERNEL, shape[1]).transpose(0, 3, 1, 2)
 
 
 def _spread(by_result: Single, weight: Single) -> Single:
     """Gradient by the inputs of a convolution from that by its result."""
     count, height, width, _ = by_result.shape
-    rows = by_result.reshape(-1, len(weight)) @ weight.reshape(len(weight), -1)
-    windows = rows.reshape(count, height, width, -1, KERNEL, KERNEL)
-    result = np.zeros((count, height + KERNEL - 1, width + KERNEL - 1, windows.shape[3]), np.float32)
+    rows = by_result.reshape(-1, len(weight)) @ _by_pixel(weight)
+    windows = rows.reshape(count, height, width, KERNEL, KERNEL, -1)
+    result = np.zeros((count, height + KERNEL - 1, width + KERNEL - 1, windows.shape[-1]), np.float32)
     for i in range(KERNEL):
         for j in range(KERNEL):
-            result[:, i : i + height, j : j + width] += windows[..., i, j]
+            result[:, i : i + height, j : j + width] += windows[:, :, :, i, j]
     return result
 
 
