@@ -59,11 +59,11 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
     """Time (N,) [s] from 0 and position (N, axes) [m] of a file with the columns time, x, y and, for three axes, z.
 
     Columns are parted by commas, semicolons, tabs or blanks; the decimal mark may be a comma where that is clear. Times
-    are numbers, or dates with a clock's time as ISO 8601 writes them, or this or minutes and seconds alone. A line before the numbers may name
-    the columns, in any order and among others, with their units in brackets. Lines that begin with #, % or // are
-    comments, one of which may name the columns, as is what stands behind # or // in a row. otherwise: the unit of
-    length where neither header nor ``style`` tells it. Raises ValueError with one sentence where the file cannot be
-    used.
+    are numbers, or dates with a clock's time as ISO 8601 writes them, or this or minutes and seconds alone. A line
+    before the numbers may name the columns, in any order and among others, with their units in brackets. Lines that
+    begin with #, % or // are comments, one of which may name the columns, as is what stands behind # or // in a row.
+    otherwise: the unit of length where neither header nor ``style`` tells it. Raises ValueError with one sentence where
+    the file cannot be used; warns where it may hold several movements.
     """
     with _named(path, "cannot read "):
         table = _table(path, style, ("time", "x", "y", "z")[: axes + 1])
