@@ -153,10 +153,7 @@ class Header:
         if len(set(self.units[1:])) > 1:
             shown = ", ".join(unit or "no unit" for unit in self.units[1:])
             raise ValueError(f"its header gives {', '.join(table.wanted[1:])} in {shown}; give all in one unit")
-        for wanted, column in zip(table.wanted[1:], (table.columns or [])[1:], strict=False):
-            words = words_in(name := self.names[column])
-            if any(word.startswith(DOUBTFUL) for word in words) and not (PLACE & {*words} or any(self.units[1:])):
-                raise ValueError(f"its column {name} may be no place; name it {wanted} if it is one, or add its unit")
+        self._check_places()
         self._check_shifted()
 
     def _pass_numbers(self) -> None:
@@ -257,6 +254,20 @@ class Header:
             raise ValueError(f"its columns are {shown}; they must be {wanted}{how}")
         if len(self.units) != len(table.wanted):
             self.units = [""] * len(table.wanted)
+
+    def _check_places(self) -> None:
+        """Refuse coordinates that may be of no place, or each of another one."""
+        owners, names = dict[frozenset[str], str](), [self.names[column] for column in self.table.columns or ()]
+        places = [place for place in zip(self.table.wanted, names, strict=False) if place[0] != "time"]
+        for wanted, name in places:
+            words = {*words_in(name)}
+            if any(word.startswith(DOUBTFUL) for word in words) and not (PLACE & words or any(self.units[1:])):
+                raise ValueError(f"its column {name} may be no place; name it {wanted} if it is one, or add its unit")
+            if more := words - PLACE - UNITS - CENTRE - NAMES[wanted][0] - NAMES[wanted][1] - {f"t{wanted}"}:
+                owners.setdefault(frozenset(more), name)
+        if len(owners) > 1:
+            shown, wanted = " and ".join(owners.values()), ", ".join(name for name, _ in places)
+            raise ValueError(f"its columns {shown} seem to be of several places; name those of one {wanted}")
 
     def _check_shifted(self) -> None:
         """Refuse rows in which columns have been shifted, and numbers that count the columns."""

@@ -334,6 +334,11 @@ def test_units_come_from_the_header_or_from_who_knows_better(
             )
             for name in ("axis", "current", "motor", "joystick", "pressure")
         ),
+        (
+            "time,hand_x,elbow_y",
+            Format(),
+            "its columns hand_x and elbow_y seem to be of several places; name .* one x, y$",
+        ),
         ("time,current_x [A],current_y [A]", Format(), "its header gives x in a, which is no length; give positions"),
         ("time,fx,fy,tx,ty,qx", Format(), "its columns are time, fx, fy, tx, ty, qx; they must be time, x, y$"),
         ("Frame,X,Y", Format(), "they must be time, x, y; name the time so, or add it .frame / frame rate"),
