@@ -43,8 +43,15 @@ def watched(experiment: Experiment, ends: list[str]) -> Experiment:
     module, result = experiment.simulation, replace(experiment)
 
     def simulate(*given: Any) -> Recording:
+        from dexrepro.physics.loop import law_failure
+
         must = "a Recording, such as world.run gives"
-        recording: Recording = returned(module.simulate(*given), "experiment.py: simulate", must, Recording)
+        try:
+            recording: Recording = returned(module.simulate(*given), "experiment.py: simulate", must, Recording)
+        except Exception as error:
+            if failure := law_failure(error):
+                raise failure from error
+            raise
         ends.append(recording.status)
         return recording
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as wall
+import traceback
 from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -49,6 +50,12 @@ class Diverged(RuntimeError):
 
 class LawFailed(RuntimeError):
     """A law raised an error or gave something that is no torque; the sentence names it, the time and the value."""
+
+
+MUST_GIVE = {
+    "joint": "Command(torque), a torque [N m] of each joint",
+    "end_point": "Command(force=...), a force [N] along each axis of measured.position, or Command(torque)",
+}
 
 
 class Recorder:
@@ -272,6 +279,27 @@ def _name_of(controller: Controller) -> str:
         told = " (of no kind, so told position and force)" if isinstance(law, Plain) else ""
         law = law.law
     return f"{getattr(law, '__qualname__', type(law).__name__)}{told}"
+
+
+def law_failure(error: Exception) -> LawFailed | None:
+    """How a law has ended a :func:`run`, whatever it raised, with arm and time; where what it gave was of no use, with
+    what it must give. None where no law was at work, or gave numbers that are not finite."""
+    cause = error.__cause__ if isinstance(error, LawFailed) else error
+    frames = [frame for frame, _ in traceback.walk_tb(cause.__traceback__ if cause else None)]
+    acting = next((frame.f_locals for frame in frames if frame.f_code is _Scene.act.__code__), None)
+    if acting is None or isinstance(cause, Undefined):
+        return None
+    text, law = str(error), acting["controller"]
+    if error is cause:
+        what = f"{type(error).__name__}: {' '.join(text.split())}"
+        text = f"the law {_name_of(law)} of arm '{acting['arm'].name}' failed at {acting['now']:.4g} s: {what}"
+    while not hasattr(law, "kind") and hasattr(law, "law"):
+        law = law.law
+    modules = [frame.f_globals.get("__name__", "") for frame in frames]
+    answered = [name for name in modules if name.startswith(("dexrepro.", law.__module__))][-1]
+    if answered.startswith("dexrepro.physics.") and getattr(law, "kind", "") in MUST_GIVE:
+        text += f"; a law of kind '{law.kind}' must give {MUST_GIVE[law.kind]}"
+    return LawFailed(text)
 
 
 def _diverged(arm: SimulatedArm, now: float) -> str:

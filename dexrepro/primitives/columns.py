@@ -5,20 +5,22 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from dexrepro.primitives.tables import COMMENT, SHOWN, Table, entries, is_entry, mark_in, numbers_in
+from dexrepro.primitives.tables import CLOCKS, COMMENT, SHOWN, Table, entries, is_entry, mark_in, numbers_in
 
 LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
 SPELLINGS = {"inch": "in inches", "m": "meters metres", "cm": "centimeters centimetres", "min": "minutes",
-             "mm": "millimeters millimetres", "s": "sec secs seconds", "ms": "msec milliseconds millis",
-             "us": "µs μs usec microseconds micros", "ns": "nsec nsecs nanoseconds nanos"}  # fmt: skip
+             "mm": "millimeters millimetres", "s": "sec secs seconds",
+             "ms": "msec msecs millisec millisecs milliseconds millis",
+             "us": "µs μs usec usecs microsec microsecs microseconds micros",
+             "ns": "nsec nsecs nanosec nanosecs nanoseconds nanos"}  # fmt: skip
 SPELT = {word: unit for unit, words in SPELLINGS.items() for word in words.split()}
 ANGLES = {"deg", "degree", "degrees", "rad", "radian", "radians"}
 RELATIVE = {"norm", "normalised", "normalized"}
 OTHER_TIMES = {"hour", "hours", "hrs", "day", "days"}
 OTHER_LENGTHS = {"um", "µm", "μm", "micrometers", "micrometres", "microns", "dm", "km", "ft", "feet"}
 OTHERS = {*ANGLES, *RELATIVE, *OTHER_LENGTHS, "px", "pixel", "pixels", "mps"}
-NO_LENGTHS = {*ANGLES, *TIMES, "mps", "hz", "n", "v", "volts"}
+NO_LENGTHS = {*ANGLES, *TIMES, "mps", "hz", "n", "v", "mv", "volts", "a", "ma", "amps", "w", "kg", "pa"}
 CONVERTED = {*OTHER_LENGTHS, *OTHER_TIMES, "h", "hr", "d", "nm", "frame", "frames"}  # by hand
 UNITS = {"", "-", *LENGTHS, *TIMES, *SPELT, *OTHERS}  # at the end of a name, or in a row of units
 SAID = re.compile(r"(?:\bin|\bunits?)\W+(?:are|is)?\W*([a-zµμ]+)\b|[\[(]([a-zµμ]+)[\])]")  # units in words about a file
@@ -29,21 +31,23 @@ QUANTITIES = {  # by the key that sets the unit: which wanted column tells it, i
 OTHER_LETTERS = {"b", "g", "m", "t"}  # before a coordinate: of a magnetic field, gravity, a moment, a torque
 NAMES = {  # of a wanted column: its plain ones, those that count where no column has one, and what begins no name of it
     "time": (
-        {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}, {"datetime", "elapsed"},
+        {"time", "t", "timestamp", "timestamps", "stamp", "sec", "secs", "seconds", "zeit"}, {"elapsed"},
         set[str]()),
     **{axis: ({axis}, {f"p{axis}", f"pos{axis}", f"{axis}pos"}, OTHER_LETTERS) for axis in "xyz"},
 }  # fmt: skip
-WHOLE, NANO = {"sec", "secs", "seconds"}, {"nanosec", "nanosecs", "nsec", "nsecs", "nanoseconds"}  # of one stamp
-PLACE = {"position", "pos"}
-NO_PLACE = {"orientation", "rotation", "rot", "angular", "angle", "euler", "quaternion", "quat", "q", "r", "twist",
-            "linear", "velocity", "vel", "v", "u", "w", "omega", "speed", "dot", "ddot", "d", "dd", "delta", "diff",
-            "acceleration", "accel", "acc", "a", "jerk", "gyro", "gyroscope", "mag", "magnetometer", "force", "f",
-            "torque", "wrench", "moment", "error", "err", "e", "std", "var", "cov", "covariance", "seq", "ori",
-            "angles", "rotvec", "tilt", "normal", "scale", "velocities", "speeds", "rate", "geschwindigkeit",
-            "accelerations", "accelerometer", "beschleunigung", "gravity", "magnetic", "forces", "kraft", "torques",
-            "tau", "moments", "momentum", "impulse", "stiffness", "errors", "sd", "sigma"}  # fmt: skip
+TIMELY = re.compile(r"(time|zeit)\w+|\w+(time|zeit|stamp)")  # a word of several: Zeitstempel, datetime
+TICKS = {word for unit in ("ms", "us", "ns") for word in (unit, *SPELLINGS[unit].split())}  # name a column of times
+WHOLE = {"sec", "secs", "seconds"}  # of a stamp in two columns
+PLACE = {"position", "pos", "posi"}
+NO_PLACE = {"rot", "quat", "q", "r", "linear", "vel", "velo", "v", "u", "w", "omega", "dot", "ddot", "d", "dd", "delta",
+            "diff", "acce", "acc", "a", "mag", "force", "forces", "f", "error", "errors", "err", "e", "std", "var",
+            "cov", "seq", "ori", "tau", "sd", "normal", "scale", "rate"}  # fmt: skip
+STEMS = ("orient", "rotat", "rotvec", "angul", "angle", "euler", "quatern", "twist", "veloc", "speed", "geschw",
+         "accel", "beschl", "jerk", "gyro", "magnetic", "magnetom", "gravi", "kraft", "torque", "wrench", "moment",
+         "impuls", "stiff", "covar", "varian", "sigma", "tilt")  # of more such words  # fmt: skip
+DOUBTFUL = ("axis", "axes", "joy", "stick", "thumbst", "button", "motor", "servo", "encod", "current", "volt", "power",
+            "press", "temperat", "strain", "sensor", "pwm", "emg", "imu", "adc")  # of what may be none  # fmt: skip
 CENTRE = {"center", "centre"}  # of gravity: this is a place
-KINDS = {word for word in PLACE | NO_PLACE if len(word) > 1}  # of columns, in a row above their names
 NAME = re.compile(  # neither a number nor prose
     r"(?!(in|of|for|at|per|the|over|from|versus|and|und)\b|.*\b(is|are|by|to)\b)[^\W\d]", re.IGNORECASE
 )
@@ -69,7 +73,7 @@ def unit_in(name: str) -> str:
         return re.sub(r"^in\s+", "", bracket[1].strip())
     first, *rest = words_in(name) or [""]
     found = next((word for word in reversed(rest) if word in UNITS - NAMES["time"][0]), "")
-    return found or (first if rest and first in OTHERS else "")
+    return found or (first if first in (OTHERS if rest else TICKS) else "")
 
 
 def are_units(names: Sequence[str]) -> bool:
@@ -77,13 +81,30 @@ def are_units(names: Sequence[str]) -> bool:
     return {name.strip("[]() ").lower() for name in names} <= UNITS
 
 
+def no_place(word: str) -> bool:
+    """Whether a word is of another quantity than a place."""
+    return word in NO_PLACE or word.startswith(STEMS)
+
+
+def _more_words(wanted: str, names: Sequence[Sequence[str]]) -> set[str]:
+    """Words of these names that mean the wanted column, too: compounds of time, a unit of it that stands alone; tx
+    where a rotation stands beside it and no force, as whose torque it would count."""
+    words = {word for name in names for word in name}
+    if wanted == "time":
+        return {name[0] for name in names if len(name) == 1} & TICKS | {*filter(TIMELY.fullmatch, words)}
+    return {f"t{wanted}"} if words & {"qx", "rx"} and not words & {"fx", "force"} else set()
+
+
 def ranked(wanted: str, names: Sequence[str]) -> list[tuple[bool, bool, bool, bool, int]]:
     """The columns that have the wanted word, first those that have no other than a unit, a place's before others."""
     result, (plain, often, never) = [], NAMES[wanted]
+    often = often | _more_words(wanted, [*map(words_in, names)])
     for column, name in enumerate(names):
         first, words = {*words_in(name)[:1]}, {*words_in(name)}
-        other = first & never | words & NO_PLACE - ({"gravity"} if words & CENTRE else set())
-        if words & (plain | often) and not other:
+        other = {word for word in words if no_place(word)} - ({"gravity"} if words & CENTRE else set())
+        if first == {"p"}:  # the position, of which frames stand behind it: p_RS_R_x
+            other = {word for word in other if len(word) > 2}
+        if words & (plain | often) and not (other or first & never):
             more = words - plain - often - PLACE - UNITS | words & {"min"}
             result.append((not words & plain, bool(more), not PLACE & words, len(words) > 1, column))
     return sorted(result)
@@ -93,12 +114,13 @@ def column_of(wanted: str, names: Sequence[str]) -> int:
     """Which of the names is the wanted column, the first of those ranked. Refuses several of the same rank."""
     best = ranked(wanted, names)
     first, *others = (column for *rank, column in best if rank == [*best[0][:-1]])
-    nano = [column for column, name in enumerate(names) if wanted == "time" and NANO & {*words_in(name)}]
+    small = [{"us", "ns"} & {*map(SPELT.get, words_in(name))} for name in names if wanted == "time"]
+    parts = [column for column, units in enumerate(small) if units]
     whole = [column for column in (first, *others) if WHOLE & {*words_in(names[column])}]
-    one, other = (whole[0], nano[0]) if nano and whole else (first, *others, first)[:2]
+    one, other = (whole[0], parts[0]) if parts and whole else (first, *others, first)[:2]
     both = f"{names[one]} and {names[other]} (columns {one + 1} and {other + 1})"
-    if nano and whole:
-        raise ValueError(f"its time is split into {both}; give it in one column, 1e-9 times the nanoseconds added")
+    if parts and whole:
+        raise ValueError(f"its time is split into {both}; give it in one column, in s with its fractions")
     if others:
         raise ValueError(f"its columns {both} could both be {wanted}; rename one")
     return first
@@ -131,6 +153,7 @@ class Header:
         if len(set(self.units[1:])) > 1:
             shown = ", ".join(unit or "no unit" for unit in self.units[1:])
             raise ValueError(f"its header gives {', '.join(table.wanted[1:])} in {shown}; give all in one unit")
+        self._check_places()
         self._check_shifted()
 
     def _pass_numbers(self) -> None:
@@ -164,7 +187,8 @@ class Header:
         names = self._names(lines[k])
         for line in reversed(lines[max(k - ABOVE, 0) : k] if mark and not are_units(names) else []):
             kinds = [entry.strip(" \"'") for entry in entries(line, mark or "")]
-            is_kind = any(KINDS & {*words_in(kind)} for kind in kinds[1:])
+            words = {word for kind in kinds[1:] for word in words_in(kind) if len(word) > 1}
+            is_kind = any(word in PLACE or no_place(word) for word in words)
             if len(kinds) == len(names) > len({*kinds}) and is_kind and not numbers_in(line):
                 for column, kind in enumerate(kinds[1:], 1):  # one that is written once goes for those behind it, too
                     kinds[column] = kind or kinds[column - 1]
@@ -180,7 +204,7 @@ class Header:
     def _is_header(self, line: str) -> bool:
         """Whether a comment names columns, if perhaps not the wanted ones."""
         names = self._names(line)
-        bare = [len(words_in(name)) == self._found([name]) == 1 for name in names]
+        bare = [len(words_in(name)) == self._found([name]) == 1 and not are_units([name]) for name in names]
         found = self._found(names) > 1 or any(bare if mark_in(line) else bare[:1])
         return found and len(names) in self.table.widths and all(map(NAME.match, names))
 
@@ -225,9 +249,25 @@ class Header:
         if naming := [k for k in lines if table.plain or self._is_header(table.lines[k])]:
             names = self._grouped(max(naming, key=self._resemblance))
             shown = ", ".join(name or "(no name)" for name in names)[:LONGEST]
-            raise ValueError(f"its columns are {shown}; they must be {wanted}")
+            lacking = [one for one in table.wanted if not ranked(one, names)]
+            how = "; name the time so, or add it (frame / frame rate)" if lacking == ["time"] else ""
+            raise ValueError(f"its columns are {shown}; they must be {wanted}{how}")
         if len(self.units) != len(table.wanted):
             self.units = [""] * len(table.wanted)
+
+    def _check_places(self) -> None:
+        """Refuse coordinates that may be of no place, or each of another one."""
+        owners, names = dict[frozenset[str], str](), [self.names[column] for column in self.table.columns or ()]
+        places = [place for place in zip(self.table.wanted, names, strict=False) if place[0] != "time"]
+        for wanted, name in places:
+            words = {*words_in(name)}
+            if any(word.startswith(DOUBTFUL) for word in words) and not (PLACE & words or any(self.units[1:])):
+                raise ValueError(f"its column {name} may be no place; name it {wanted} if it is one, or add its unit")
+            if more := words - PLACE - UNITS - CENTRE - NAMES[wanted][0] - NAMES[wanted][1] - {f"t{wanted}"}:
+                owners.setdefault(frozenset(more), name)
+        if len(owners) > 1:
+            shown, wanted = " and ".join(owners.values()), ", ".join(name for name, _ in places)
+            raise ValueError(f"its columns {shown} seem to be of several places; name those of one {wanted}")
 
     def _check_shifted(self) -> None:
         """Refuse rows in which columns have been shifted, and numbers that count the columns."""
@@ -265,6 +305,7 @@ class Header:
         no_length = column and (said in NO_LENGTHS or re.search(r"[^\W\d]\s*/", said))
         by_hand = said in CONVERTED or said[:1].isdigit() or (said in RELATIVE and not given)
         for wrong, why in (
+            (":" in said, f"; write its times as {CLOCKS}"),
             (no_length, ", which is no length; give positions"),
             (by_hand, f"; convert it to one of {units}"),
             (said and said not in allowed and not given, f"; set {key}= to {units}"),

@@ -24,8 +24,9 @@ FEWEST = 8
 LONG = 60.0  # s; a file that lasts longer with steps of a second or more has other stamps than seconds
 SHORT = 0.01  # s; no movement of a hand
 WIDE = 2.0  # m; neither
-NARROW = 0.004  # m; as small becomes what a hand has drawn if its lengths are in m and taken to be in cm
+NARROW = 0.004  # m; as small becomes what a hand has drawn, or an outline, if its lengths are in m and taken for cm
 FAR = 1e7  # m; as far as from the equator to a pole
+MANY = 20  # samples, of which none is far from the one before
 PAUSE = 10.0  # times the usual step; where such pauses take a third of the time, clocks have jumped
 csv.field_size_limit(2**31 - 1)  # by default 128 kB, which a note or a picture in base64 beside the path exceeds
 
@@ -58,11 +59,11 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
     """Time (N,) [s] from 0 and position (N, axes) [m] of a file with the columns time, x, y and, for three axes, z.
 
     Columns are parted by commas, semicolons, tabs or blanks; the decimal mark may be a comma where that is clear. Times
-    are numbers, or dates with a clock's time as ISO 8601 writes them, or this alone. A line before the numbers may name
-    the columns, in any order and among others, with their units in brackets. Lines that begin with #, % or // are
-    comments, one of which may name the columns, as is what stands behind # or // in a row. otherwise: the unit of
-    length where neither header nor ``style`` tells it. Raises ValueError with one sentence where the file cannot be
-    used.
+    are numbers, or dates with a clock's time as ISO 8601 writes them, or this or minutes and seconds alone. A line
+    before the numbers may name the columns, in any order and among others, with their units in brackets. Lines that
+    begin with #, % or // are comments, one of which may name the columns, as is what stands behind # or // in a row.
+    otherwise: the unit of length where neither header nor ``style`` tells it. Raises ValueError with one sentence where
+    the file cannot be used; warns where it may hold several movements.
     """
     with _named(path, "cannot read "):
         table = _table(path, style, ("time", "x", "y", "z")[: axes + 1])
@@ -80,6 +81,8 @@ def read_path(path: str, style: Format = Format(), axes: int = 3, otherwise: str
             new = np.concatenate([[True], np.diff(time) != 0])
             time, position, lines = time[new], position[new], lines[new]
         _check(time, position, lines, tick)
+    for doubt in _doubts(table, position, lines):
+        warnings.warn(f"'{path}' {doubt}", stacklevel=2)
     return time, position
 
 
@@ -89,14 +92,24 @@ def read_corners(path: str, style: Format = Format(), otherwise: str = "m") -> A
         table = _table(path, style, ("x", "y"))
         header = Header(table)
         corners, lines = table.numbers_by_row()
-        corners = LENGTHS[header.unit("unit", style.unit, otherwise) or otherwise] * corners
+        unit = header.unit("unit", style.unit, otherwise)
+        corners = LENGTHS[unit or otherwise] * corners
         _check_near(corners, lines)
     corners = corners[:-1] if len(corners) > 1 and (corners[0] == corners[-1]).all() else corners
     (x, y), (later_x, later_y) = corners.T, np.roll(corners, -1, axis=0).T
     if len(corners) < 3 or abs((x * later_y - y * later_x).sum()) < 1e-12:
         must = "it must hold the corners x, y of a polygon, three or more, in order"
         raise ValueError(f"'{path}': it has no area; {must}")
+    _warn_of_size(path, corners, unit)
     return corners
+
+
+def _warn_of_size(path: str, places: Array, unit: str | None) -> None:
+    """Say how large a drawing is that no hand is likely to have made; ``unit``: of its lengths, if told."""
+    span = float(np.ptp(places, axis=0).max())
+    if span > WIDE or (span < NARROW and unit is None):
+        large = "large" if span > WIDE else "small"
+        warnings.warn(f"'{path}' spans {span:.3g} m; set unit= if that is too {large}", stacklevel=3)
 
 
 def _table(path: str, style: Format, wanted: tuple[str, ...]) -> Table:
@@ -146,6 +159,18 @@ def _check(time: Array, position: Array, lines: Array, tick: str | None) -> None
         raise ValueError("it never moves: all its samples are at one place")
 
 
+def _doubts(table: Table, position: Array, lines: Array) -> Iterator[str]:
+    """What suggests that a file holds more than one movement."""
+    own = "give each recording a file of its own"
+    if table.again is not None:
+        yield f"names its columns again in line {table.again + 1}; {own} if that begins another one"
+    steps = np.abs(np.diff(position, axis=0)).max(axis=1)
+    worst, span = int(np.argmax(steps)), float(np.ptp(position, axis=0).max())
+    if len(steps) >= MANY and steps[worst] > span / 2:
+        far = f"jumps by {steps[worst]:.3g} m from line {lines[worst]} to {lines[worst + 1]}, and spans {span:.3g} m"
+        yield f"{far}; delete what does not belong to the movement, or {own}"
+
+
 def _check_near(position: Array, lines: Array) -> None:
     """Refuse a place that no hand can reach; ``lines``: lines of the places."""
     away = np.abs(position).max(axis=1)
@@ -184,8 +209,5 @@ def demonstrations(
         raise ValueError(f"{len(found)} files are more than the {count} demonstrations of the experiment")
     paths = [resampled(*read_path(name, style, axes, otherwise), samples) for name in found]
     for name, path in zip(found, paths, strict=True):
-        if (span := float(np.ptp(path, axis=0).max())) > WIDE:
-            warnings.warn(f"'{name}' spans {span:.3g} m; set unit= if no hand went as far as that", stacklevel=2)
-        if span < NARROW and style.unit is None:
-            warnings.warn(f"'{name}' spans {span:.3g} m; set unit= if the hand went further than that", stacklevel=2)
+        _warn_of_size(name, path, style.unit)
     return [paths[k % len(paths)] for k in range(count)]

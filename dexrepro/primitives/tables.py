@@ -14,7 +14,8 @@ import numpy as np
 
 from dexrepro.arrays import Array
 
-OTHER_TEXTS = {r"{|\[\s*[\[{\d-]": "JSON or a printed list", "<": "XML"}  # by their beginning
+OTHER_TEXTS = {r"{|\[\s*[\[{\d-]": "JSON or a printed list", "<": "XML",
+               r"---\n|- *[\[{]|\w+: *\n *(- |\w+:)": "YAML"}  # by their beginning  # fmt: skip
 SEPARATORS = (";", "\t", ",", None)  # None: blanks; of several that do equally well, the first
 LOOKED_AT = 20  # rows that tell how all are written
 SHOWN = 60  # letters of a line in a sentence
@@ -22,16 +23,19 @@ HASH = r"#(?!N/A|[NН]/[DД]|NV(?=[\"';,\t]|$)|[¡¿]?[A-ZÀ-ÞА-Я/0]+[!?])"  
 REMARK = re.compile(rf"(\S*)(^|\s+)({HASH}|//)")  # behind the numbers of a row
 COMMENT = re.compile(rf"^\s*({HASH}|%|//)[\s#%/]*")
 OPENED = re.compile(r'(^|[,;\t])"[^"]*$')  # an entry in quotes that goes on in the next line
-STAMP = (
-    r"(\d+ days? )?(\d{4}-\d\d-\d\d[t ])?\d?\d:\d\d:\d\d([.,]\d+)?(z|[-+]\d\d:?\d\d)?"  # ISO 8601's, a span of pandas
+STAMP = (  # ISO 8601's, a span of pandas, minutes and seconds, a duration of MATLAB
+    r"(\d+ days? )?(\d{4}[-/]\d\d[-/]\d\d[t ])?\d?\d:\d\d:\d\d([.,]\d+|:\d{3})?(z|[-+]\d\d:?\d\d)?"
+    r"|\d{1,3}:[0-5]\d[.,]\d+|\d+(\.\d+)? sec"
 )
+CLOCKS = "2026-11-28T10:00:00.25, 10:00:00.25 or 00:00.25"
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|[-+]?inf|" + STAMP)
 
 
 def lines_of(text: str) -> list[str]:
     """The lines of a text; several that an entry in quotes goes over are joined, and empty ones follow. Refuses other
     kinds of text."""
-    text = text.replace("\u2212", "-")
+    text = text.replace("\u2212", "-").replace("\u2013", "-")
+    text = text.replace("\ufeff", "")  # begins a file that was joined to another
     begin = text.lstrip()[:SHOWN]
     if not begin:
         raise ValueError("it is empty")
@@ -50,12 +54,14 @@ class Table:
 
     head: the lines before the rows, without empty ones; plain: those of them that are no comments; body: the rows; all
     by their place in ``lines``. separator: what parts the entries of a row, None for blanks; widths: how many entries
-    the first rows have; columns: where the wanted ones are, None where nothing names them.
+    the first rows have; columns: where the wanted ones are, None where nothing names them; again:
+    the line that repeats the names, None where none does.
     """
 
     def __init__(self, lines: list[str], wanted: tuple[str, ...]) -> None:
         self.lines, self.wanted = lines, wanted
         self.columns: list[int] | None = None
+        self.again: int | None = None
         self.stripped = [line.strip(" \t,;") for line in lines]
         self.rows_behind(0)
 
@@ -112,7 +118,9 @@ class Table:
     def named_by(self, k: int, columns: list[int]) -> None:
         """Take a line for the names of the columns: below it are rows, to be refused if they hold too few numbers."""
         rows = [other for other in self.plain if other > k and numbers_in(self.lines[other])] + self.body
-        self.body = [other for other in rows if self.stripped[other] != self.stripped[k]]  # the names again
+        again = {other for other in range(k + 1, len(self.lines)) if self.stripped[other] == self.stripped[k]}
+        self.again = min(again, default=None)
+        self.body = [other for other in rows if other not in again]
         self.head.remove(k)
         self.columns = columns
 
@@ -151,7 +159,9 @@ class Table:
             if None in values or len(marks) > 1:
                 must = "every entry must be a finite number; delete the row or fill it in"
                 if values[0] is None and ":" in chosen[0]:
-                    must = "its time must be a number, or all be as 2026-11-28T10:00:00.25 or 10:00:00.25"
+                    must = f"its time must be a number, or all be as {CLOCKS}"
+                elif len(row) >= len(self.wanted) and not numbers_in(self.lines[k]):
+                    must = "give each of several recordings a file of its own, or delete the row"
                 elif len(marks) > 1:
                     must = "numbers must have either . or , and no mark between thousands"
                 raise ValueError(f"line {k + 1} holds '{self.lines[k].strip()[:SHOWN]}': {must}")
@@ -193,7 +203,13 @@ def _seconds(entry: str) -> float | None:
     """A date with a clock's time, or this alone, as seconds; None for what is neither."""
     if not re.fullmatch(STAMP, entry.lower()):
         return None
+    if " sec" in entry:
+        return float(entry.removesuffix(" sec"))
+    if entry.count(":") == 1:
+        minutes, _, rest = entry.partition(":")
+        return 60 * int(minutes) + float(rest.replace(",", "."))
     with contextlib.suppress(ValueError):  # such as the 31st of February
+        entry = re.sub(r":(\d{3})$", r".\1", entry.replace("/", "-"))
         days, _, entry = entry.rpartition(" days ") if " days " in entry else entry.rpartition(" day ")
         date = datetime.fromisoformat(entry if "-" in entry[:5] else f"1970-01-01T{'0' * (entry[1] == ':')}{entry}")
         return 86400 * int(days or 0) + (date if date.tzinfo else date.replace(tzinfo=UTC)).timestamp()

@@ -5,34 +5,21 @@ from __future__ import annotations
 import difflib
 import math
 import os
-import re
 import warnings
 import xml.etree.ElementTree as xml
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from xml.parsers import expat
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from dexrepro.arrays import Array
 from dexrepro.robots.arm import GREY, Arm, Joint, Link, Pose, Shape
-from dexrepro.text import decoded
+from dexrepro.robots.urdf_file import axis_of, by_name, floats, link_of, name_of, parsed, place, pose_of
 
 TURNING = ("revolute", "continuous")
-FOREIGN = {
-    "mujoco": "an MJCF file of MuJoCo",
-    "mujocoinclude": "a part of an MJCF file of MuJoCo",
-    "sdf": "an SDF file of Gazebo",
-    "COLLADA": "a COLLADA mesh",
-}
-SEMANTIC = {"group", "group_state", "end_effector", "virtual_joint", "disable_collisions"}  # of an SRDF file of MoveIt
 MESHES = (".stl", ".obj", ".dae")  # what the engine reads
-NEEDED = ("value", "ixx", "iyy", "izz", "size", "radius", "length")  # of an element that is there, as in ROS
-TAGS = {"link", "joint", "parent", "child", "origin", "axis", "limit", "mimic", "inertial", "mass", "inertia", "visual",
-        "collision", "geometry"}  # fmt: skip
-LONGEST = 255  # letters of a name; PyBullet ends the process for some thousand bytes
 TURN = 2 * math.pi + 0.01  # rad; what turns by more is likely to be in degrees
 LARGEST = 10.0  # m; what is longer in an arm's file is likely to be in another unit
 DENSEST = 1e8  # kg/m^3, 5000 times gold; so dense is a ball whose mass is in g, its moment in kg m^2
@@ -65,7 +52,7 @@ def from_urdf(
         raise ValueError(f"packages = {packages} is not allowed: it must be names with folders, {{robot: ../robot}}")
     file = Path(os.path.expanduser(str(path)))
     try:
-        tree = _Tree(_parsed(file), file, {name: str(folder) for name, folder in (packages or {}).items()})
+        tree = _Tree(parsed(file), file, {name: str(folder) for name, folder in (packages or {}).items()})
         arm = tree.arm(str(end), None if root is None else str(root), base)  # YAML makes a number of a link named 5
     except FileNotFoundError:
         raise ValueError(f"there is no URDF file '{path}'") from None
@@ -86,58 +73,11 @@ def _is_base(base: object) -> bool:
         return False
 
 
-def _parsed(path: Path) -> xml.Element:
-    """The root element <robot>. Prefixes stay part of the names: many published files do not declare theirs."""
-    data = path.read_bytes()
-    declared = re.match(rb"\s*<\?xml[^>]*encoding=[\"']([\w.-]+)", data)
-    eight_bits = declared and not declared[1].lower().startswith(b"utf")
-    text = decoded(data, declared[1].decode() if declared and eight_bits else None)
-    if not text.strip():
-        raise ValueError("it is empty")
-    text = re.sub(r"<\?xml\s.*?\?>", "", text, count=1, flags=re.DOTALL)  # it may stand behind a comment
-    # What ROS reads of comments, "--" within them, no strict parser does.
-    text = re.sub("<!--.*?-->", lambda comment: "\n" * comment[0].count("\n"), text, flags=re.DOTALL)
-    builder, parser = xml.TreeBuilder(element_factory=_Node), expat.ParserCreate("utf-8")
-
-    def start(tag: str, attributes: dict[str, str]) -> None:
-        builder.start(tag, attributes).line = parser.CurrentLineNumber  # type: ignore[attr-defined]
-
-    def elsewhere(_name: str, _base: str | None, file: str | None, _public: str | None) -> int:
-        raise ValueError(f"it takes in another file, '{file}', which is not read; put the text of that in its place")
-
-    parser.StartElementHandler, parser.EndElementHandler = start, builder.end
-    parser.ExternalEntityRefHandler, parser.CharacterDataHandler = elsewhere, builder.data
-    try:
-        parser.Parse(text.rstrip().encode(), True)
-    except expat.ExpatError as error:
-        raise ValueError(f"it is no XML file: {error}") from None
-    robot = builder.close()
-    if robot.tag != "robot":
-        raise ValueError(f"it is {FOREIGN.get(robot.tag, 'no URDF')}: it begins with <{robot.tag}> instead of <robot>")
-    parts = [part for child in robot if child.tag in ("link", "joint") for part in child.iter()]
-    if any(node.tag.startswith("xacro:") for node in robot.iter()) or any(
-        "${" in value or "$(" in value for part in parts for value in part.attrib.values()
-    ):
-        raise ValueError("it still holds xacro; turn it into URDF first: xacro FILE > arm.urdf")
-    for node in [*robot, *parts]:
-        if node.tag not in TAGS and (right := node.tag.lower()) in TAGS:
-            raise ValueError(f"line {getattr(node, 'line', 0)}: <{node.tag}> must be <{right}>, in small letters")
-    if robot.find("link") is None and any(child.tag in SEMANTIC for child in robot):
-        raise ValueError("it is an SRDF file of MoveIt, which holds no links; name the URDF file that it is about")
-    return robot
-
-
-class _Node(xml.Element):
-    """An element that knows its ``line`` in the file."""
-
-    line = 0
-
-
 class _Tree:
     """Links by name and the joint that leads into each; ``mended``: what was not as it should be, as half sentences."""
 
     def __init__(self, robot: xml.Element, path: Path, packages: Mapping[str, str]) -> None:
-        self.links = _by_name(robot, "link")
+        self.links = by_name(robot, "link")
         self.into: dict[str, xml.Element] = {}
         self.children: dict[str, list[str]] = {name: [] for name in self.links}
         self.path, self.packages, self.mended = path, packages, list[str]()
@@ -145,10 +85,10 @@ class _Tree:
         for name, folder in packages.items():
             if not Path(folder).expanduser().is_dir():
                 raise ValueError(f"packages.{name} = {folder} is not allowed: there is no such folder")
-        for name, node in _by_name(robot, "joint").items():
+        for name, node in by_name(robot, "joint").items():
             node.set("type", node.get("type", "").strip().lower())
             for role in ("parent", "child"):
-                if not (link := _link(node, role)):
+                if not (link := link_of(node, role)):
                     raise ValueError(f"joint '{name}' has no {role}; it needs <{role} link=\"...\"/>")
                 if link not in self.links:
                     close = difflib.get_close_matches(link, self.links, n=1)
@@ -156,9 +96,11 @@ class _Tree:
                         f"joint '{name}' names '{link}' as its {role}, and no link has that name"
                         f"{f'; did you mean {close[0]!r}?' if close else ''}"
                     )
-            if (other := self.into.setdefault(_link(node, "child"), node)) is not node:
-                raise ValueError(f"link '{_link(node, 'child')}' hangs on two joints, '{_name(other)}' and '{name}'")
-            self.children[_link(node, "parent")].append(_link(node, "child"))
+            if (other := self.into.setdefault(link_of(node, "child"), node)) is not node:
+                raise ValueError(
+                    f"link '{link_of(node, 'child')}' hangs on two joints, '{name_of(other)}' and '{name}'"
+                )
+            self.children[link_of(node, "parent")].append(link_of(node, "child"))
 
     def arm(self, end: str, root: str | None, base: Sequence[float]) -> Arm:
         for name in (end, root):
@@ -169,7 +111,7 @@ class _Tree:
                 )
                 raise ValueError(f"it has no link '{name}'; {there}")
         above = self.above(end)
-        first = _link(above[0], "parent") if above else end
+        first = link_of(above[0], "parent") if above else end
         if root is None and (stray := [name for name in self.links if name not in self.into and name != first]):
             self.mended.append(f"link '{stray[0]}' hangs on no joint; only what hangs on '{first}' is read")
         root = root or first
@@ -178,7 +120,7 @@ class _Tree:
         chain = [node for node in above[len(self.above(root)) :] if node.get("type") != "fixed"]
         if not chain:
             raise ValueError(f"no joint moves the link '{end}'")
-        moving = [_link(node, "child") for node in chain]
+        moving = [link_of(node, "child") for node in chain]
         self._check(chain, set(moving))
         joints = tuple(
             self._joint(node, Pose.of(self.between(parent, child)))
@@ -213,27 +155,27 @@ class _Tree:
         """Refuse joints that no arm can have."""
         for node in chain:
             if (kind := node.get("type")) not in TURNING:
-                ways = f"root: {_link(node, 'child')} begins the arm behind it"
+                ways = f"root: {link_of(node, 'child')} begins the arm behind it"
                 if node is chain[-1]:
-                    ways = f"end the arm before it, at {_link(node, 'parent')}"
+                    ways = f"end the arm before it, at {link_of(node, 'parent')}"
                 raise ValueError(
-                    f"joint '{_name(node)}' is {kind or 'of no type'}; only revolute, continuous and fixed joints can "
-                    "move an arm" + (f" ({ways})" if len(chain) > 1 else "")
+                    f"joint '{name_of(node)}' is {kind or 'of no type'}; only revolute, continuous and fixed joints "
+                    "can move an arm" + (f" ({ways})" if len(chain) > 1 else "")
                 )
             if (mimic := node.find("mimic")) is not None:
                 followed = f"joint '{mimic.get('joint')}'" if mimic.get("joint") else "a joint that it does not name"
                 raise ValueError(
-                    f"joint '{_name(node)}' follows {followed} (mimic), but an arm's joints are "
-                    f"free; end the arm before it, at {_link(node, 'parent')}"
+                    f"joint '{name_of(node)}' follows {followed} (mimic), but an arm's joints are "
+                    f"free; end the arm before it, at {link_of(node, 'parent')}"
                 )
-        names = set(map(_name, chain))
+        names = set(map(name_of, chain))
         for part in [part for name in moving for part, _ in self.carried(name, moving)]:
             mimic, kind = self.into[part].find("mimic"), self.into[part].get("type")
             if part not in moving and kind in ("floating", "planar"):
-                self.mended.append(f"joint '{_name(self.into[part])}' off the chain is {kind} and taken to be fixed")
+                self.mended.append(f"joint '{name_of(self.into[part])}' off the chain is {kind} and taken to be fixed")
             if mimic is not None and part not in moving and mimic.get("joint") in names:
                 raise ValueError(
-                    f"joint '{_name(self.into[part])}' off the chain follows joint '{mimic.get('joint')}' of the arm "
+                    f"joint '{name_of(self.into[part])}' off the chain follows joint '{mimic.get('joint')}' of the arm "
                     "(mimic); a linkage that moves with the arm cannot be simulated"
                 )
 
@@ -244,7 +186,7 @@ class _Tree:
             if self.into[name] in chain:
                 raise ValueError(f"the joints form a loop at link '{name}'; they must form a tree")
             chain.insert(0, self.into[name])
-            name = _link(chain[0], "parent")
+            name = link_of(chain[0], "parent")
         return chain
 
     def between(self, ancestor: str, name: str) -> Array:
@@ -256,17 +198,17 @@ class _Tree:
 
     def _behind(self, node: xml.Element, frame: Array) -> Array:
         """Transform (4, 4) of a joint's child from that of its parent, the joint at 0."""
-        behind: Array = frame @ _pose(node).matrix @ self._still(node)
+        behind: Array = frame @ pose_of(node).matrix @ self._still(node)
         return behind
 
     def _still(self, node: xml.Element) -> Array:
         """What a joint off the chain adds (4, 4): nothing at 0, or the offset of one that follows another (mimic)."""
         result, mimic = np.eye(4), node.find("mimic")
-        offset = _floats(mimic, "offset", "0")[0]
+        offset = floats(mimic, "offset", "0")[0]
         if offset and node.get("type") == "prismatic":
-            result[:3, 3] = offset * _axis(node)
+            result[:3, 3] = offset * axis_of(node)
         elif offset and node.get("type") in TURNING:
-            result[:3, :3] = Rotation.from_rotvec(offset * _axis(node)).as_matrix()
+            result[:3, :3] = Rotation.from_rotvec(offset * axis_of(node)).as_matrix()
         return result
 
     def carried(self, name: str, moving: set[str]) -> Iterator[tuple[str, Array]]:
@@ -334,7 +276,7 @@ class _Tree:
         solid, visual = link.findall("collision"), link.findall("visual")
         if not solid and not visual:
             return []
-        colour = _floats(link.find("visual/material/color"), "rgba", "")
+        colour = floats(link.find("visual/material/color"), "rgba", "")
         look = colour if len(colour) == 4 else GREY
         frame, found = Pose.of(at), list[Shape]()
         for node in solid or visual:
@@ -342,18 +284,18 @@ class _Tree:
             for kind, names in {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length")}.items():
                 if geometry is not None and (shape := geometry.find(kind)) is not None:
                     size = tuple(
-                        value for name in names for value in _floats(shape, name, "0 0 0" if kind == "box" else "0")
+                        value for name in names for value in floats(shape, name, "0 0 0" if kind == "box" else "0")
                     )
                     if min(size) < 0:
-                        raise ValueError(f"{_place(shape, names[0])} of link '{part}' has a negative size")
-                    found.append(Shape(kind, size, frame @ _pose(node), look, collides=bool(solid)))
+                        raise ValueError(f"{place(shape, names[0])} of link '{part}' has a negative size")
+                    found.append(Shape(kind, size, frame @ pose_of(node), look, collides=bool(solid)))
         for node in visual:
             mesh = node.find("geometry/mesh")
             if mesh is not None and (file := self._mesh(mesh.get("filename", ""))):
-                scale = _floats(mesh, "scale", "")[:3] or (1.0, 1.0, 1.0)  # some files have a fourth number
+                scale = floats(mesh, "scale", "")[:3] or (1.0, 1.0, 1.0)  # some files have a fourth number
                 if len(scale) < 3 or not all(scale):
-                    raise ValueError(f"{_place(mesh, 'scale')} must hold three numbers, none of them 0")
-                found.append(Shape("mesh", scale, frame @ _pose(node), look, collides=False, mesh=str(file)))
+                    raise ValueError(f"{place(mesh, 'scale')} must hold three numbers, none of them 0")
+                found.append(Shape("mesh", scale, frame @ pose_of(node), look, collides=False, mesh=str(file)))
         return found
 
     def _mesh(self, name: str) -> Path | None:
@@ -369,9 +311,9 @@ class _Tree:
         return found[0] if found and found[0].suffix.lower() in MESHES else None
 
     def _joint(self, node: xml.Element, origin: Pose) -> Joint:
-        name, limit, bounded = _name(node), node.find("limit"), node.get("type") == "revolute"
-        (lower,), (upper,) = _floats(limit, "lower", "0"), _floats(limit, "upper", "0")
-        (effort,), (velocity,) = _floats(limit, "effort", "inf"), _floats(limit, "velocity", "inf")
+        name, limit, bounded = name_of(node), node.find("limit"), node.get("type") == "revolute"
+        (lower,), (upper,) = floats(limit, "lower", "0"), floats(limit, "upper", "0")
+        (effort,), (velocity,) = floats(limit, "effort", "inf"), floats(limit, "velocity", "inf")
         if bounded and lower > upper:
             raise ValueError(f"joint '{name}' has the limits {lower:g} to {upper:g}; the lower must not be above")
         for quantity, value in {"effort": effort, "velocity": velocity}.items():
@@ -384,20 +326,21 @@ class _Tree:
                 raise ValueError(f"joint '{name}' has the limits {lower:g} to {upper:g}; it cannot move")
             self.mended.append(f"joint '{name}' has no limits or 0 to 0, and is taken to be without")
             bounded = False
-        if bounded and 50 < max(-lower, upper) <= 360:
+        if bounded and 2 * TURN < max(-lower, upper) <= 360:
             self.mended.append(f"joint '{name}' has the limits {lower:g} to {upper:g}; they are in rad, not in degrees")
         bounds = (lower, upper) if bounded else (-math.inf, math.inf)
-        return Joint(name, origin, tuple(_axis(node).tolist()), *bounds, effort or math.inf, velocity or math.inf)
+        return Joint(name, origin, tuple(axis_of(node).tolist()), *bounds, effort or math.inf, velocity or math.inf)
 
 
 def _doubts(above: Sequence[xml.Element], bodies: Sequence[Link]) -> Iterator[str]:
     """What can be simulated but no arm has, so that another unit than rad, m or kg is likely."""
     for node in above:
-        turn = _floats(node.find("origin"), "rpy", "0 0 0")
+        turn = floats(node.find("origin"), "rpy", "0 0 0")
         if max(map(abs, turn)) > TURN:
-            yield f"joint '{_name(node)}' has the rpy {' '.join(f'{x:g}' for x in turn)}; it is in rad, not in degrees"
-        if (away := math.hypot(*_floats(node.find("origin"), "xyz", "0 0 0"))) > LARGEST:
-            yield f"joint '{_name(node)}' stands {away:g} m from what carries it; lengths are in m"
+            shown = " ".join(f"{angle:g}" for angle in turn)
+            yield f"joint '{name_of(node)}' has the rpy {shown}; it is in rad, not in degrees"
+        if (away := math.hypot(*floats(node.find("origin"), "xyz", "0 0 0"))) > LARGEST:
+            yield f"joint '{name_of(node)}' stands {away:g} m from what carries it; lengths are in m"
     for link in bodies:
         if (away := math.hypot(*link.com)) > LARGEST:
             yield f"link '{link.name}' has its centre of mass {away:g} m from its joint; lengths are in m"
@@ -407,92 +350,14 @@ def _doubts(above: Sequence[xml.Element], bodies: Sequence[Link]) -> Iterator[st
             yield f"link '{link.name}' has {moment:g} kg m^2 at {link.mass:g} kg; its units are kg and m"
 
 
-def _by_name(robot: xml.Element, kind: str) -> dict[str, xml.Element]:
-    """Children of <robot>; what stands deeper, such as the joints of <gazebo> or <transmission>, is none of the arm."""
-    found: dict[str, xml.Element] = {}
-    for node in robot.findall(kind):
-        if not _name(node):
-            raise ValueError(f"a {kind} has no name")
-        if len(_name(node)) > LONGEST:
-            raise ValueError(
-                f"the name of {kind} '{_name(node)[:40]}…' has {len(_name(node))} letters, {LONGEST} at most"
-            )
-        if found.setdefault(_name(node), node) is not node:
-            raise ValueError(f"there are two {kind}s '{_name(node)}'; names must differ")
-    return found
-
-
-def _name(node: xml.Element) -> str:
-    return node.get("name", "")
-
-
-def _link(joint: xml.Element, role: str) -> str:
-    node = joint.find(role)
-    return "" if node is None else node.get("link", "")
-
-
-def _place(node: xml.Element | None, attribute: str) -> str:
-    """An attribute as it stands in the file, for a sentence."""
-    if node is None:
-        return attribute
-    return f'line {getattr(node, "line", 0)}: <{node.tag} {attribute}="{node.get(attribute, "")}">'
-
-
-def _floats(node: xml.Element | None, attribute: str, default: str) -> tuple[float, ...]:
-    text = default if node is None else node.get(attribute, "" if attribute in NEEDED else default)
-    try:
-        values = tuple(map(float, text.split()))
-        bad = math.isnan if node is None or node.tag == "limit" else lambda value: not math.isfinite(value)
-        if any(map(bad, values)) or len(values) != len(default.split() or values):
-            raise ValueError
-    except ValueError:
-        count = len(default.split())
-        wanted = f"{count} numbers parted by blanks" if count > 1 else "one number" if count else "numbers"
-        raise ValueError(f"{_place(node, attribute)} does not hold {wanted}, such as 0.25") from None
-    return values
-
-
-def _check_attributes(node: xml.Element | None, *names: str) -> None:
-    """Refuse an element that says something, as SDF files do, but nothing in these attributes."""
-    if (
-        node is not None
-        and not node.attrib.keys() & {*names}
-        and (node.attrib or len(node) or (node.text or "").strip())
-    ):
-        line = getattr(node, "line", 0)
-        raise ValueError(f"line {line}: <{node.tag}> has no {' or '.join(names)}; write its numbers there")
-
-
-def _pose(node: xml.Element) -> Pose:
-    origin = node.find("origin")
-    if origin is not None and "quat_xyzw" in origin.attrib:
-        turn = Rotation.from_quat(_floats(origin, "quat_xyzw", "0 0 0 1")).as_euler("xyz")
-        raise ValueError(
-            f'{_place(origin, "quat_xyzw")} is not read; write rpy="{" ".join(f"{x:.9g}" for x in turn)}" in its place'
-        )
-    _check_attributes(origin, "xyz", "rpy")
-    return Pose(_floats(origin, "xyz", "0 0 0"), _floats(origin, "rpy", "0 0 0"))  # type: ignore[arg-type]
-
-
-def _axis(node: xml.Element) -> Array:
-    """Unit vector (3,) of a joint's axis."""
-    _check_attributes(node.find("axis"), "xyz")
-    axis = np.array(_floats(node.find("axis"), "xyz", "1 0 0"))
-    if not 1e-12 < math.hypot(*axis) < 1e12:
-        raise ValueError(
-            f"joint '{_name(node)}' has the axis {' '.join(f'{x:g}' for x in axis)}; it must have a direction"
-        )
-    return axis / np.linalg.norm(axis)
-
-
 def _inertial(node: xml.Element, frame: Array) -> tuple[float, Array, Array]:
     """Mass [kg], centre (3,) [m] and inertia about it (3, 3) [kg m^2] in the frame of the body that carries it."""
-    pose = Pose.of(frame) @ _pose(node)
+    pose = Pose.of(frame) @ pose_of(node)
     moments = node.find("inertia")
-    xx, xy, xz, yy, yz, zz = (_floats(moments, name, "0")[0] for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+    xx, xy, xz, yy, yz, zz = (floats(moments, name, "0")[0] for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
     turn = Rotation.from_euler("xyz", pose.rpy).as_matrix()
     inertia = turn @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ turn.T
-    return _floats(node.find("mass"), "value", "0")[0], np.array(pose.xyz), inertia
+    return floats(node.find("mass"), "value", "0")[0], np.array(pose.xyz), inertia
 
 
 def _rigid(inertia: Array, mass: float) -> tuple[Array, float]:

@@ -13,6 +13,7 @@ import pytest
 from cases import case, rng
 
 from dexrepro import chapters
+from dexrepro.case import run, watched
 from dexrepro.config import compose_chapter
 from dexrepro.control.contract import Command, Measured, check, report
 from dexrepro.control.motion import Motion, rest
@@ -21,6 +22,7 @@ from dexrepro.own_code import check_own
 from dexrepro.physics.drive import JointDrive, Limited
 from dexrepro.physics.loop import LawFailed
 from dexrepro.physics.world import World
+from dexrepro.pool import sentence
 from dexrepro.robots.planar import planar
 
 
@@ -237,6 +239,40 @@ def test_a_law_that_forgot_its_kind_hears_that_it_was_taken_for_a_plain_one() ->
         LawFailed, match=r"the law Forgetful \(of no kind, so told position and force\) of arm 'follower'"
     ):
         chapters.load("2").experiment("holding_comparison").simulation.simulate(config, rng("holding_comparison"))
+
+
+class Ends(EndPoint):
+    """Does what it is told from 5 ms on."""
+
+    does: Any = None
+
+    def __call__(self, measured: Measured[Any], desired: Motion[Any]) -> Command:
+        return super().__call__(measured, desired) if measured.time < 0.005 else Ends.does(measured.position)
+
+
+def unsolved(_: Any) -> None:
+    raise RuntimeError("my solver\ndid not converge")
+
+
+@pytest.mark.parametrize(
+    ("does", "told"),
+    [
+        (unsolved, r"RuntimeError: my solver did not converge \(\S*test_own_law.py, line \d+\)$"),
+        (lambda position: None, r"AttributeError: .*; a law of kind 'end_point' must give Command\(force=...\), a f"),
+        (lambda position: position, r"AttributeError: .*; a law of kind 'end_point' must give Command\(force="),
+        (lambda position: Command(force=np.zeros(7)), r"ValueError: .*; a law of kind 'end_point' must give Command"),
+        (lambda position: Command(np.zeros(7)), r"it gave .*; a law of kind 'end_point' must give .*Command\(torque\)"),
+    ],
+    ids=["raises", "none", "array", "axes", "joints"],
+)
+def test_whatever_a_law_does_that_ends_its_run_is_told_with_the_time_and_what_to_give(does: Any, told: str) -> None:
+    arm = "scene.arm={_target_: dexrepro.robots.planar.planar, lengths: [0.4, 0.3], masses: [1.0, 0.8]}"
+    leader = "scene.leader={line: {start: [0.5, 0.1, 0], end: [0.55, 0.15, 0], period: 4}}"
+    Ends.does = does
+    config = case("own", "scene", "default", arm, leader, "scene.law={_target_: test_own_law.Ends}", seed=1)
+    with pytest.raises(LawFailed) as caught:
+        run(watched(chapters.load("own").experiment("scene"), []), config, 1)
+    assert re.match(rf"LawFailed: the law Ends of arm 'arm' failed at 0.005 s: {told}", sentence(caught.value))
 
 
 def test_the_own_scene_takes_laws_of_every_kind_so_that_each_must_declare_its_own() -> None:

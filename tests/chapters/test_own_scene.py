@@ -195,7 +195,11 @@ FIXED = "{_target_: dexrepro.control.holding.FixedDistance, dt: 1, displacement:
         ("arm", "{_target_: dexrepro.robots.urdf.from_urdf, path: no.urdf, end: tip}", "no URDF file 'no.urdf'"),
         ("arm", TINY.replace("end: tip", "end: hand"), "has no link 'hand'; there are: base, upper, fore, tip"),
         ("arm", "{path: tiny.urdf, end: tip}", "scene.arm is no arm"),
-        ("leader", OWN_LINE, r"the point \(0.72, 0.1, 0\) m of scene.leader \+ offset at 0 s: arm .* comes no closer"),
+        (
+            "leader",
+            OWN_LINE,
+            r"the point \(0.72, 0.1, 0\) m of scene.leader \+ offset at 0 s: arm .* no closer than .* .m.; move scene",
+        ),
         ("leader", LINE.replace("0.1, 0]", "0.1, 0.2]"), r"at 0 s: the arm stays at z = 0 m"),
         ("leader", "{circle: {radius: 1}, line: {period: 1}}", "names line, circle: give exactly one of points, line"),
         ("leader", "{points: [[0, 0, 0]]}", "scene.leader.points: give two rows or more of time"),

@@ -162,6 +162,22 @@ COMMAS = rows("{t};{x};{y}").replace(".", ",")
         '"time\r\n[s]";"x\r\n[m]";"y\r\n[m]"\r\n' + COMMAS,
         "note,time,x,y\n" + rows('"a\n\nb",{t},{x},{y}'),
         'a screen of 5"\ntime,x,y\n' + PLAIN,
+        "Zeitstempel;x;y\n" + COMMAS,
+        "systime,x,y\n" + PLAIN,
+        *(
+            f"{name},x,y\n" + "".join(f"{(20 + k) * step},{k},{2 * k}\n" for k in range(10))
+            for name, step in {"millis": 100, "ms": 100, "micros": 100_000, "nsecs": 100_000_000}.items()
+        ),
+        "# X-Achse, Y-Achse, Zeitpunkt\n" + rows("{x},{y},{t}"),
+        "# timestamp tx ty tz qx qy qz qw\n" + rows("{t} {x} {y} 5 0 0 0 1"),
+        "#timestamp [s], p_RS_R_x [m], p_RS_R_y [m], q_RS_x [], v_RS_R_x [m s^-1], b_w_RS_S_x [rad s^-1]\n"
+        + rows("{t},{x},{y},0,5,5"),
+        "Time,Hand-Joint-Posi-x,Hand-Joint-Posi-y,Hand-Joint-Velo-x,Hand-Joint-Velo-y\n" + rows("{t},{x},{y},5,5"),
+        "time,current position x,current position y\n" + PLAIN,
+        "time,current_x,current_y\ns,m,m\n" + PLAIN,
+        "time,forceps_x,forceps_y\n" + PLAIN,
+        "time,x,y\n" + PLAIN.replace(",0.0", ",\u20130.0").replace("\n2.5", "\n\ufeff2.5"),
+        "Time,x,y\n" + rows("{t} sec,{x},{y}"),
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
@@ -176,11 +192,17 @@ def test_files_of_many_makes_hold_the_same_path(tmp_path: Path, text: str, encod
 @pytest.mark.parametrize(("separator", "mark"), [(",", "."), (";", ","), ("\t", ".")])
 @pytest.mark.parametrize(
     "form",
-    ["2026-11-28T10:59:{:09.6f}+01:00", "2026-11-28 23:59:{:06.3f}Z", "2026-11-28 09:59:{:04.1f}", "9:59:{:04.1f}"],
+    [
+        "2026-11-28T10:59:{:09.6f}+01:00",
+        "2026-11-28 23:59:{:06.3f}Z",
+        "2026-11-28 09:59:{:04.1f}",
+        "9:59:{:04.1f}",
+        "2026/11/28 23:59:{:06.3f}",
+        "59:{:04.1f}",
+        "159:{:04.1f}",
+    ],
 )
-def test_dates_and_clocks_as_iso_8601_writes_them_are_times(
-    tmp_path: Path, form: str, separator: str, mark: str, header: str
-) -> None:
+def test_dates_and_clocks_are_times(tmp_path: Path, form: str, separator: str, mark: str, header: str) -> None:
     data = [separator.join((form.format(50 + 0.1 * k), f"{k}{mark}0", f"{2 * k}{mark}0")) for k in range(10)]
     file = write(tmp_path, data, header.format(separator))
     time, position = read_path(file, axes=2)
@@ -278,6 +300,8 @@ def test_units_come_from_the_header_or_from_who_knows_better(
                 "gravity.x,gravity.y",
                 "v center of gravity x,v center of gravity y",
                 "accelerometerX,accelerometerY",
+                "Sensor-Acce-x,Sensor-Acce-y",
+                "tx,ty",
                 "Kraft x,Kraft y",
             )
         ),
@@ -295,13 +319,32 @@ def test_units_come_from_the_header_or_from_who_knows_better(
         ("x,y,nsecs,secs", Format(), "its time is split into secs and nsecs .columns 4 and 3.; give it in one column"),
         *(
             (f"# {names}", Format(), f"its columns are {names}; they must be time, x, y")
-            for names in ("time, vx, vy", "time, q1, q2", "t, lon, lat", "X-Achse, Y-Achse, Zeitpunkt", "x, y, frame")
+            for names in ("time, vx, vy", "time, q1, q2", "t, lon, lat", "x, y, frame")
         ),
         (
             "# time [s], shoulder [rad], elbow [rad]",
             Format(),
             r"its columns are time.s., shoulder.rad., elbow.rad.; they",
         ),
+        *(
+            (
+                f"time,{name}_x,{name}_y",
+                Format(),
+                f"its column {name}_x may be no place; name it x if it is one, or add",
+            )
+            for name in ("axis", "current", "motor", "joystick", "pressure")
+        ),
+        (
+            "time,hand_x,elbow_y",
+            Format(),
+            "its columns hand_x and elbow_y seem to be of several places; name .* one x, y$",
+        ),
+        ("time,current_x [A],current_y [A]", Format(), "its header gives x in a, which is no length; give positions"),
+        ("time,fx,fy,tx,ty,qx", Format(), "its columns are time, fx, fy, tx, ty, qx; they must be time, x, y$"),
+        ("Frame,X,Y", Format(), "they must be time, x, y; name the time so, or add it .frame / frame rate"),
+        ("time [mm:ss],x,y", Format(), "its header gives time in mm:ss; write its times as 2026-.* or 00:00.25"),
+        ("sec,usec,x,y", Format(), "its time is split into sec and usec .columns 1 and 2.; give it in one column"),
+        ("millis,x,y", Format(time_unit="s"), "its header gives time in ms, not in s; set time_unit=ms"),
         ("# t u v", Format(), "its columns are t, u, v; they must be time, x, y"),
         (
             "stamp.sec,stamp.nanosec,x,y",
@@ -433,6 +476,9 @@ def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
         ([*ROWS[:4], "2.4,3", *ROWS[5:]], "time,x,y\n", "line 6 holds '2.4,3'"),
         ([*ROWS[:4], "2.4,3", *ROWS[5:]], "", "line 5 has 2 numbers"),
         ([*ROWS[:4], ROWS[3], *ROWS[5:]], "time,x,y\n", "does not increase at line 6"),
+        ([*ROWS, "time,y,x", *ROWS], "time,x,y\n", "line 12 holds 'time,y,x': give each of several recordings a"),
+        (["- [0, 1, 2]"] * 9, "data:\n", "it is YAML, not columns of numbers"),
+        (["header:\n  seq: 1\nx: 1\n---"] * 9, "", "it is YAML, not columns of numbers"),
         ([*ROWS, *ROWS], "time,x,y\n", "does not increase at line 12; give each of its recordings a file of its own"),
         (ROWS[:7], "time,x,y\n", "has 7 samples; there must be at least 8"),
         (["# x"], "", "has 0 samples"),
@@ -588,17 +634,35 @@ def test_a_name_is_a_name_before_it_is_a_pattern(tmp_path: Path, name: str) -> N
 
 def test_a_path_that_no_hand_can_have_gone_is_read_with_a_warning(tmp_path: Path) -> None:
     pixels = write(tmp_path, [f"0.{k},{100 * k},{k}" for k in range(8)])
-    with pytest.warns(UserWarning, match="path.csv' spans 7 m; set unit= if no hand went as far as that"):
+    with pytest.warns(UserWarning, match="path.csv' spans 7 m; set unit= if that is too large"):
         demonstrations(pixels, 1, 20, Format(), axes=2, otherwise="cm")
 
 
 def test_a_path_in_metres_that_is_taken_for_one_in_centimetres_is_read_with_a_warning(tmp_path: Path) -> None:
     metres = write(tmp_path, [f"0.{k},{0.02 * k},{k % 2}e-2" for k in range(8)])
-    with pytest.warns(UserWarning, match="path.csv' spans 0.0014 m; set unit= if the hand went further than that"):
+    with pytest.warns(UserWarning, match="path.csv' spans 0.0014 m; set unit= if that is too small"):
         demonstrations(metres, 1, 20, Format(), axes=2, otherwise="cm")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         demonstrations(metres, 1, 20, Format("cm"), axes=2, otherwise="cm")
+
+
+@pytest.mark.parametrize("again", ["time,x,y", "\ntime,x,y\n", "# time,x,y"])
+def test_two_recordings_in_one_file_are_read_with_warnings(tmp_path: Path, again: str) -> None:
+    twice = [f"{0.1 * k:.1f},{k % 20},0" for k in range(40)]
+    head = "# time,x,y\n" if "#" in again else "time,x,y\n"
+    line, first = 22 + again.startswith("\n"), 22 + again.count("\n") + 1
+    with (
+        pytest.warns(
+            UserWarning, match=f"names its columns again in line {line}; give each recording a file of its own"
+        ),
+        pytest.warns(UserWarning, match=f"jumps by 19 m from line 21 to {first}, and spans 19 m; delete what does not"),
+    ):
+        time, _ = read_path(write(tmp_path, [*twice[:20], again, *twice[20:]], head), axes=2)
+    assert len(time) == 40
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_path(write(tmp_path, [f"{0.1 * k:.1f},{k},0" for k in range(40)]), axes=2)
 
 
 SQUARE = ["0,0", "4,0", "4,2", "0,2"]
@@ -637,6 +701,16 @@ def test_what_has_no_area_is_no_outline(tmp_path: Path, rows: list[str]) -> None
 def test_a_corner_out_of_reach_is_named(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"path.csv': line 3 is 4e\+300 m away"):
         read_corners(write(tmp_path, ["0,0", "4e300,0", "0,1"], "x,y\n"))
+
+
+def test_an_outline_in_metres_that_is_taken_for_one_in_centimetres_is_read_with_a_warning(tmp_path: Path) -> None:
+    metres = write(tmp_path, ["0,0", "0.3,0", "0.3,0.2"], "x,y\n")
+    with pytest.warns(UserWarning, match="path.csv' spans 0.003 m; set unit= if that is too small"):
+        read_corners(metres, otherwise="cm")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_corners(metres, Format("cm"))
+        read_corners(metres, Format("m"), otherwise="cm")
 
 
 def test_an_outline_that_is_not_there_is_named() -> None:

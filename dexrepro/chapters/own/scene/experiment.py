@@ -166,8 +166,9 @@ def start(config: Config, path: Path) -> Array:
             found = solve(arm, place, start=found, restarts=5)
         except Unreachable as error:
             far = config.leader.get("csv") and np.abs(place).max() > FAR
-            remedy = "; scene.leader={csv: {file: ..., unit: mm}} reads a file in mm" if far else ""
-            raise InputError(f"the point {where}: {error}{remedy}") from error
+            remedy = "move scene.leader, scene.offset or what the arm stands on (its base)"
+            remedy = "scene.leader={csv: {file: ..., unit: mm}} reads a file in mm" if far else remedy
+            raise InputError(f"the point {where}: {error} [m]; {remedy}") from error
         height = forward(arm, found)[0][2]
         if abs(height - place[2]) > 1e-4:  # the inverse kinematics of a planar arm looks at x and y alone
             raise InputError(f"the point {where}: the arm stays at z = {height:g} m")
