@@ -17,7 +17,7 @@ from dexrepro.checks import is_number, is_whole
 from dexrepro.disk_cache import cached
 from dexrepro.errors import InputError, nearest, one_line, refused
 from dexrepro.interpolation import inherited
-from dexrepro.overrides import check_overrides, forced, in_quotes, keys_in, parsed, understood
+from dexrepro.overrides import check_overrides, forced, in_quotes, keys_in, parsed, refuse_sweeps
 from dexrepro.physics.engine import ENGINES, is_installed
 from dexrepro.storage import read_yaml
 
@@ -70,7 +70,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
 
     search = [f"hydra.searchpath=[{in_quotes(f'file://{Path(extra_dir).resolve()}')}]"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
-    understood(overrides)
+    refuse_sweeps(overrides)
     if extra_dir:
         own_keys(overrides, extra_dir)  # each file is looked at
     try:

@@ -18,6 +18,7 @@ from dexrepro.cache_key import content_of, own_digest, package_digest, presentat
 from dexrepro.cases import experiment_cases, resolved_block
 from dexrepro.checks import (
     check_files,
+    check_keys,
     check_lengths,
     check_sizes,
     check_types,
@@ -175,13 +176,7 @@ def _plan(
 ) -> Plan:
     seed: int = config["seed"]
     cases, block = experiment_cases(config, name), resolved_block(config, name)
-    for key in block:
-        if key not in shipped[name]:
-            if key == name:
-                raise InputError(
-                    f"unknown key '{name}.{key}': what is below '{name}:' in the file stands there without"
-                )
-            raise InputError(f"unknown key '{name}.{key}': {nearest(key, shipped[name])}")
+    check_keys(block, resolved_block(shipped, name), name)
     differs = [] if _as_shipped(config, shipped) else _differs(name, config, shipped, cases, block)
     for values in cases.values() if differs else ():
         check_words(values, words_of(chapter, name), name)

@@ -37,7 +37,7 @@ examples:
 
 @command(
     "simulate, measure and draw what is not there yet",
-    (*SELECTION, "case", "seed", "engine", "workers", "case_timeout", "force", "quiet", "gui"),
+    (*SELECTION, "claim", "case", "seed", "engine", "workers", "case_timeout", "force", "quiet", "gui"),
     option("-m", "--multirun", help="a sweep: each combination of values is a job"),
     option("-cd", "--config-dir", metavar="DIR", help="a folder of your own with configurations and laws"),
     option("-c", "--cfg", choices=["job", "hydra", "all"], help="print the configuration, run nothing"),
@@ -47,10 +47,10 @@ examples:
 )  # fmt: skip
 def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
-    from dexrepro.selection import for_hydra, quoted
+    from dexrepro.selection import for_hydra, needs_of, quoted
 
     folder = ("--config-dir", "-cd")  # what follows is a name as it is
-    arguments = [word if last in folder else quoted(word) for last, word in zip(["", *arguments], arguments)]
+    arguments = [word if last in folder else quoted(word) for last, word in zip(["", *arguments], needs_of(arguments))]
     extra_dir, overrides = _config_dir_option(arguments)
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
         given = [text for text in overrides if not text.startswith("-") and "=" in text]
