@@ -98,7 +98,7 @@ def test_null_still_turns_a_number_off_that_is_no_quantity(toy: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        (b"only: [a\n b: c: d\n", "bad.yaml is no YAML file: while parsing a flow sequence"),
+        (b"only: [a\n b: c: d\n", "bad.yaml is no YAML file: line 2: while parsing a flow sequence"),
         (b"\tonly: decay\n", "bad.yaml is no YAML file"),
         (b"# mine\nonly: caf\xe9\n", "bad.yaml: line 2 is not UTF-8; save the file as UTF-8"),
         (b"- a\n", "bad.yaml holds no keys"),

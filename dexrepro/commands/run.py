@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
 from dexrepro.commands import FAILED, OK, SHOWN, command, option, out, say, show_table, warn
-from dexrepro.errors import InputError, importable
+from dexrepro.errors import InputError, importable, nearest
 from dexrepro.keys import SELECTION
 
 if TYPE_CHECKING:
@@ -146,10 +146,26 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
         _print_summary(results, outcome.differs, skipped)
     for text in dict.fromkeys(text for result in results.values() for text in result.warnings):
         warn(f"warning: {text}")
+    for name, result in results.items():
+        for text in _unmeasured(name, result):
+            warn(f"warning: {text}")
     for name in outcome.assembled:
         if left := _undrawn(name, results[name]):
             warn(f"warning: {name}: draw in figures.py made no {', '.join(left)}")
     return outcome
+
+
+def _unmeasured(name: str, result: Result) -> Iterator[str]:
+    """Claims about metrics that an experiment of the user's, run whole, does not have, as sentences."""
+    from dexrepro import chapters
+
+    chapter = result.run["chapter"]
+    if chapter == chapters.OWN or not chapters.is_added(chapter) or result.run["differs"]:
+        return
+    for claim in chapters.load(chapter).claims_of(name):
+        absent = [key for key in claim.metrics if key.startswith(f"{name}.") and key not in result.metrics]
+        for key in absent[:1]:
+            yield f"{claim.id} is not evaluated, there is no metric '{key}': {nearest(key, result.metrics)}"
 
 
 def _undrawn(name: str, result: Result) -> list[str]:
