@@ -233,7 +233,7 @@ class Experiment:
         return getattr(self.simulation, name, None)
 
     def _part(self, module: str, name: str, default: Any, of: type | None = None) -> Any:
-        """What a module of the folder calls by a name; of: what each in it must be, where it is many, as the default."""
+        """What a module of the folder calls by a name; of: what each must be, where it is many, as the default."""
         path = self.folder / f"{module}.py"
         if not path.exists():
             return default

@@ -90,6 +90,13 @@ def test_a_value_of_another_kind_or_a_key_that_is_not_there_is_refused(
     check({"on": False, "law": {"_target_": "a.C", "gain": 1}, "place": [2, 3], "lengths": [1]}, shipped, "e")
 
 
+def test_a_value_that_the_cases_to_run_do_not_have_is_said_to_be_without_effect(toy: Path) -> None:
+    differs = {case: plan_chapter("90", ["only=decay", "decay.rate=3", f"case={case}"])[0][0].differs
+               for case in ("fast", "plain")}  # fmt: skip
+    assert differs["fast"][0].endswith("(book: 2.0), without effect: every case that is run sets its own")
+    assert differs["plain"][0] == "rate=3 (book: 2.0)"
+
+
 def test_null_still_turns_a_number_off_that_is_no_quantity(toy: Path) -> None:
     plans, _ = plan_chapter("90", ["only=decay", "decay.gain=null"])
     assert plans[0].jobs[0].config["gain"] is None

@@ -121,6 +121,7 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
     from dexrepro.result import Result
     from dexrepro.runner import run_plans
     from dexrepro.selection import chapters_of, of_chapter, positive_workers
+    from dexrepro.unread import without_effect
 
     numbers, rest = chapters_of(overrides, extra_dir)
     plans: list[Plan] = []
@@ -147,6 +148,8 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
     for text in dict.fromkeys(text for result in results.values() for text in result.warnings):
         warn(f"warning: {text}")
     for name, result in results.items():
+        if keys := without_effect(result.run):
+            warn(f"warning: {', '.join(keys[:SHOWN])}: no case that was run reads {'it' if len(keys) == 1 else 'them'}")
         for text in _unmeasured(name, result):
             warn(f"warning: {text}")
     for name in outcome.assembled:
