@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from dexrepro.errors import InputError, refused
+from dexrepro.errors import InputError, nearest, refused
 
 FILES = ("demonstrations", "reactions", "csv", "file", "path", "files", "obstacle_files", "block_file")
 """Keys whose values are names of files."""
@@ -76,8 +76,23 @@ def check_values(config: Mapping[str, Any], where: str) -> None:
             raise refused(f"{where}.{key}", value, f"be at least one step of {min(steps):g} s")
 
 
+def check_keys(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
+    """Refuse keys that the shipped configuration does not have; those of an object are for its class to know."""
+    for key, value in config.items():
+        if key not in shipped:
+            if key == where:
+                raise InputError(
+                    f"unknown key '{where}.{key}': what is below '{where}:' in the file stands there without"
+                )
+            raise InputError(f"unknown key '{where}.{key}': {nearest(key, shipped)}")
+        book = shipped[key]
+        if isinstance(value, Mapping) and isinstance(book, Mapping) and "_target_" not in {*value, *book}:
+            check_keys(value, book, f"{where}.{key}")
+
+
 def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
-    """Refuse what is no number where the shipped configuration has a number, or numbers in lists.
+    """Refuse what is no number, or neither true nor false, where the shipped configuration has that, or has numbers in
+    lists; and a word in place of an object.
 
     null stays possible, for it turns many a thing off, but not for what is a quantity by its name.
     """
@@ -89,6 +104,12 @@ def check_types(config: Mapping[str, Any], shipped: Mapping[str, Any], where: st
             check_types(value, book, f"{where}.{key}")
         if isinstance(book, Mapping) and (is_number(value) or isinstance(value, bool)):
             raise refused(f"{where}.{key}", value, "hold keys with values")
+        if isinstance(book, Mapping) and "_target_" in book and isinstance(value, str):
+            raise refused(
+                f"{where}.{key}", repr(value), "hold keys with values, as {_target_: MODULE.CLASS, KEY: VALUE}"
+            )
+        if isinstance(book, bool) and not isinstance(value, bool | None):
+            raise refused(f"{where}.{key}", repr(value), "be true or false")
         numbers = [is_number(item) for _, item in leaves(book)]
         if not isinstance(book, Mapping) and numbers and all(numbers):
             alone = is_number(book) and (key == "duration" or _STEP.search(key))  # others may be a list, one a case
@@ -141,8 +162,10 @@ def check_lengths(config: Mapping[str, Any], shipped: Mapping[str, Any], where: 
         book = shipped.get(key)
         if isinstance(value, Mapping) and isinstance(book, Mapping):
             check_lengths(value, book, f"{where}.{key}")
-        elif isinstance(value, list) and isinstance(book, list) and _VECTOR.search(key) and len(value) != len(book):
-            raise refused(f"{where}.{key}", value, f"have {len(book)} values")
+        elif isinstance(book, list) and (_VECTOR.search(key) or key in _A_LINK):
+            other = isinstance(value, list) and len(value) != len(book) and key not in _A_LINK
+            if other or is_number(value):
+                raise refused(f"{where}.{key}", value, f"have {len(book)} values")
 
 
 def returned(thing: Any, function: str, must: str, kind: type = Mapping, of: type | tuple[type, ...] = object) -> Any:

@@ -17,7 +17,7 @@ from dexrepro.checks import is_number, is_whole
 from dexrepro.disk_cache import cached
 from dexrepro.errors import InputError, nearest, one_line, refused
 from dexrepro.interpolation import inherited
-from dexrepro.overrides import check_overrides, forced, in_quotes, keys_in, parsed, understood
+from dexrepro.overrides import check_overrides, forced, in_quotes, keys_in, parsed, refuse_sweeps
 from dexrepro.physics.engine import ENGINES, is_installed
 from dexrepro.storage import read_yaml
 
@@ -70,7 +70,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
 
     search = [f"hydra.searchpath=[{in_quotes(f'file://{Path(extra_dir).resolve()}')}]"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
-    understood(overrides)
+    refuse_sweeps(overrides)
     if extra_dir:
         own_keys(overrides, extra_dir)  # each file is looked at
     try:
@@ -171,10 +171,21 @@ def read_config(path: Path) -> dict[str, Any]:
         line = error.object.count(b"\n", 0, error.start) + 1
         raise InputError(f"{path}: line {line} is not UTF-8; save the file as UTF-8") from error
     except (yaml.YAMLError, OmegaConfBaseException, ValueError) as error:
-        raise InputError(f"{path} is no YAML file: {one_line(error)}") from error
+        raise InputError(f"{path} is no YAML file: {_yaml_fault(error, path)}") from error
     if not isinstance(content, dict) or not content or not all(isinstance(key, str) for key in content):
         raise InputError(f"{path} holds no keys: it must consist of lines such as 'key: value'")
     return content
+
+
+def _yaml_fault(error: Exception, path: Path) -> str:
+    """What is wrong in a YAML file, with its line."""
+    mark = getattr(error, "problem_mark", None)
+    if mark is None:
+        return one_line(error)
+    line = path.read_text("utf-8").splitlines()[mark.line : mark.line + 1]
+    tab = "; a tab cannot indent, write spaces" if re.match(r"\s*\t", "".join(line)) else ""
+    said = ": ".join(filter(None, [getattr(error, "context", ""), getattr(error, "problem", "")]))
+    return one_line(f"line {mark.line + 1}: {said}{tab}")
 
 
 def _refuse_odd_numbers(path: Path, text: str) -> None:

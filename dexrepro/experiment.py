@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 import importlib
 import math
+import textwrap
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -17,7 +18,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from dexrepro.errors import reading
+from dexrepro.errors import InputError, reading
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -196,11 +197,12 @@ class Experiment:
 
     @property
     def figures(self) -> Mapping[str, Figure]:
-        return {name: figure.of(self.name) for name, figure in self._part("figures", "FIGURES", {}).items()}
+        given = self._part("figures", "FIGURES", {}, of=Figure)
+        return {name: figure.of(self.name) for name, figure in given.items()}
 
     @property
     def tables(self) -> Mapping[str, str]:
-        return self._part("figures", "TABLES", {})
+        return self._part("figures", "TABLES", {}, of=str)
 
     @property
     def film(self) -> Film | None:
@@ -210,15 +212,19 @@ class Experiment:
     @property
     def units(self) -> Mapping[str, str]:
         """Units of channels that are not the world's own, by name."""
-        return self._part("figures", "UNITS", {})
+        return self._part("figures", "UNITS", {}, of=str)
 
     @property
     def claims(self) -> tuple[Claim, ...]:
-        return tuple(claim.of(self.name) for claim in self._part("claims", "CLAIMS", ()))
+        from dexrepro.claims import Claim
+
+        return tuple(claim.of(self.name) for claim in self._part("claims", "CLAIMS", (), of=Claim))
 
     @property
     def references(self) -> tuple[Reference, ...]:
-        return tuple(reference.of(self.name) for reference in self._part("claims", "REFERENCES", ()))
+        from dexrepro.claims import Reference
+
+        return tuple(reference.of(self.name) for reference in self._part("claims", "REFERENCES", (), of=Reference))
 
     def function(self, name: str) -> Callable[..., Any] | None:
         """One of the optional functions above, or None."""
@@ -226,8 +232,26 @@ class Experiment:
             return self._part("figures", name, None)
         return getattr(self.simulation, name, None)
 
-    def _part(self, module: str, name: str, default: Any) -> Any:
-        if not (self.folder / f"{module}.py").exists():
+    def _part(self, module: str, name: str, default: Any, of: type | None = None) -> Any:
+        """What a module of the folder calls by a name; of: what each must be, where it is many, as the default."""
+        path = self.folder / f"{module}.py"
+        if not path.exists():
             return default
         with reading(self.folder):
-            return getattr(importlib.import_module(f"{self.package}.{module}"), name, default)
+            found = getattr(importlib.import_module(f"{self.package}.{module}"), name, default)
+        if of is not None:
+            named = isinstance(default, Mapping)
+            whole = isinstance(found, Mapping if named else tuple | list)
+            wrong = (
+                [item for item in (found.values() if named else found) if not isinstance(item, of)]
+                if whole
+                else [found]
+            )
+            if wrong:
+                must = (
+                    f"have a {of.__name__} for each name"
+                    if named
+                    else f"be a tuple of {of.__name__}, a comma behind each"
+                )
+                raise InputError(f"{path}: {name} must {must}; it has {textwrap.shorten(repr(wrong[0]), 60)}")
+        return found

@@ -51,9 +51,10 @@ def understood(overrides: Sequence[str]) -> list[Override]:
     for text in overrides:
         override = parsed(text)
         if override is None or not override.key_or_group:
+            foreign = "" if text.partition("=")[0].isascii() else "; a key has letters from a to z alone"
             raise InputError(
                 f"'{text[:200]}' is not an override of the form key=value, such as chapter=2, only=EXPERIMENT or "
-                "figure=2.7"
+                f"figure=2.7{foreign}"
             )
         if override.is_range_sweep():
             sweep: Any = override.value()
@@ -62,6 +63,15 @@ def understood(overrides: Sequence[str]) -> list[Override]:
                 raise InputError(f"'{text}' is not allowed: it makes {max(count, 0)} jobs, {LARGEST_SWEEP} at most")
         found.append(override)
     return found
+
+
+def refuse_sweeps(overrides: Sequence[str]) -> None:
+    """Refuse several values in place of one."""
+    for override in understood(overrides):
+        if override.is_sweep_override():
+            key, _, values = str(override.input_line).partition("=")
+            listed = f"; one list is written {key}=[{values}]" if override.is_choice_sweep() else ""
+            raise InputError(f"'{key}={values}' is a sweep, which needs -m, a run for each value{listed}")
 
 
 def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> None:
@@ -75,12 +85,15 @@ def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> Non
             listed = re.sub(r"(\.\d+)(\..*)?$", "", key)
             if isinstance(value_at(shipped, listed), list):
                 raise InputError(f"'{key}' lies in a list, which is given whole: '{listed}=[…]'")
+            if (new := re.fullmatch(r"(\w+)\.cases\.(\w+)", key)) and f"{new[1]}.cases" in keys:
+                near = nearest(new[2], value_at(shipped, f"{new[1]}.cases") or ())
+                raise InputError(f"{new[1]} has no case '{new[2]}': add it, '+{override.input_line}'; {near}")
             of_case = re.fullmatch(r"(\w+)\.(cases\.\w+)\.(.+)", key)
             if of_case and {f"{of_case[1]}.{of_case[2]}", f"{of_case[1]}.{of_case[3]}"} <= {*keys}:
                 raise InputError(
                     f"{of_case[1]}.{of_case[2]} does not set '{of_case[3]}' yet: add it, '+{override.input_line}'"
                 )
-            raise InputError(f"unknown key '{key}': {nearest(key, keys)}")
+            raise InputError(f"unknown key '{key}': {nearest(key, keys if '.' in key else shipped)}")
 
 
 def keys_in(node: Mapping[str, Any], prefix: str = "") -> Iterator[str]:

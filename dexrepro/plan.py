@@ -18,6 +18,7 @@ from dexrepro.cache_key import content_of, own_digest, package_digest, presentat
 from dexrepro.cases import experiment_cases, resolved_block
 from dexrepro.checks import (
     check_files,
+    check_keys,
     check_lengths,
     check_sizes,
     check_types,
@@ -43,6 +44,7 @@ class Job:
     """One case to simulate and measure.
 
     content: hash of its values and of all code and files that it uses; own: of the user's files among them.
+    watched: whether it is noted which of its values are read.
     """
 
     chapter: str
@@ -55,6 +57,7 @@ class Job:
     folder: str
     gui: bool = False
     timeout: float | None = None
+    watched: bool = False
 
     @property
     def name(self) -> str:
@@ -175,13 +178,7 @@ def _plan(
 ) -> Plan:
     seed: int = config["seed"]
     cases, block = experiment_cases(config, name), resolved_block(config, name)
-    for key in block:
-        if key not in shipped[name]:
-            if key == name:
-                raise InputError(
-                    f"unknown key '{name}.{key}': what is below '{name}:' in the file stands there without"
-                )
-            raise InputError(f"unknown key '{name}.{key}': {nearest(key, shipped[name])}")
+    check_keys(block, resolved_block(shipped, name), name)
     differs = [] if _as_shipped(config, shipped) else _differs(name, config, shipped, cases, block)
     for values in cases.values() if differs else ():
         check_words(values, words_of(chapter, name), name)
@@ -196,13 +193,14 @@ def _plan(
         folder = results / "runs" / f"{label}-{digest_of([cases, seed, *([told] if told != REFERENCE else [])])[:10]}"
     plan = Plan(chapter, name, block, [], folder, seed, engine, differs)
     versions = list(plan.versions.values())
+    watched = chapter != chapters.OWN and (bool(differs) or chapters.is_added(chapter))
     for case, values in cases.items():
         values = case_values(values, case, seed, told, perturbation)
         own = own_digest(values)
         content = content_of(experiment, values, own)
         cached = results / ".cache" / name / f"{case}-{digest_of([content, versions])[:16]}"
         plan.jobs.append(Job(chapter, name, case, values, seed, content, own, str(cached), bool(config["gui"]),
-                             config["case_timeout"]))  # fmt: skip
+                             config["case_timeout"], watched))  # fmt: skip
     return plan
 
 
@@ -229,22 +227,26 @@ def _differs(
             check(values, book.get(case, first), name)
     changed = [key for key, value in config[name].items() if not same(value, shipped[name].get(key))]
     check_unread(changed, cases.values(), first, name)
-    own = {_key(text): text for text in differences(block, resolved_block(shipped, name))}
+    own = {key_of(text): text for text in differences(block, resolved_block(shipped, name))}
     listed = differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
-    reached: dict[str, str] = {}  # what changes in a case, by its key there; the first case that has it
-    for text in differences(cases, book):
-        case, _, key = _key(text).partition(".")
-        if f"cases.{case}.{key}" not in map(_key, listed):
+    reached: dict[str, str] = {}  # what changes in a case that is run, by its key there; the first case that has it
+    wanted = config["case"] if isinstance(config["case"], list) else [config["case"] or "*"]
+    some = {case for case in cases if any(fnmatch.fnmatchcase(case, str(pattern)) for pattern in wanted)}
+    others = {*cases} - some
+    mine, theirs = ({case: kept[case] for case in kept if case not in others} for kept in (cases, book))
+    for text in differences(mine, theirs):
+        case, _, key = key_of(text).partition(".")
+        if f"cases.{case}.{key}" not in map(key_of, listed):
             reached.setdefault(key, text)
     for key in own.keys() - reached.keys() if "" not in reached else ():
-        own[key] += ", without effect: every case sets its own"
+        own[key] += f", without effect: every case{' that is run' if others else ''} sets its own"
     # A shared value that only a case refers to is named where that case has it.
     beside = [text for key, text in reached.items() if key and key not in own]
     seed = differences({"seed": config["seed"]}, {"seed": shipped["seed"]})
     return [*own.values(), *seed, *listed, *beside]
 
 
-def _key(difference: str) -> str:
+def key_of(difference: str) -> str:
     """The key that a line of ``differences`` is about."""
     return difference.partition("=")[0].removesuffix(" left out")
 

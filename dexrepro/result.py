@@ -30,7 +30,8 @@ SUMMARY = "summary"  # stands for the numbers over several cases in nested metri
 class CaseEntry:
     """What run.json says of a case: how it ended, steps, simulated time [s], wall time [s] and their quotient.
 
-    warnings: what the user's files made doubtful, above all.
+    warnings: what the user's files made doubtful, above all. unread: keys of its configuration that it did not read;
+    None where that was not watched.
     """
 
     status: str
@@ -39,6 +40,7 @@ class CaseEntry:
     wall: float
     real_time_factor: float | None
     warnings: list[str] = field(default_factory=list)
+    unread: list[str] | None = None
 
 
 @dataclass(frozen=True)

@@ -42,6 +42,7 @@ from dexrepro.storage import (
     write_text,
     write_yaml,
 )
+from dexrepro.unread import Watched, unread
 
 PACKAGES = ("pandas", "matplotlib", "hydra-core")  # beside those that can change a number
 log = logging.getLogger(__name__)
@@ -93,13 +94,14 @@ def execute(job: Job) -> CaseEntry:
     import_anew(job.config)
     with warnings.catch_warnings(record=True) as caught, contextlib.chdir("."):  # a law may go elsewhere
         check_own(job.config)
-        config = live(job.config)
+        config = Watched.of(live(job.config)) if job.watched else live(job.config)
         if job.own != own_digest(job.config) and "__main__." not in str(job.config):
             raise InputError("a file that it uses was edited meanwhile; the same command runs it again")
         recording, metrics, wall = _run(experiment, config, job.seed)
     factor = recording.simulated / wall if recording.simulated else None
     doubts = sorted({one_line(warning.message) for warning in caught})
-    entry = CaseEntry(recording.status, recording.steps, recording.simulated, wall, factor, doubts)
+    left = [*unread(config)] if job.watched else None
+    entry = CaseEntry(recording.status, recording.steps, recording.simulated, wall, factor, doubts, left)
     with whole_folder(Path(job.folder)) as folder:
         save_recording(recording, folder / "series", job.case, experiment.rate)
         files = {path.name: [path.stat().st_size, _checksum(path)] for path in sorted((folder / "series").iterdir())}

@@ -35,6 +35,7 @@ class {name}:
     """
 
     kind = "joint"
+    ranges = {{"stiffness": (10.0, 100.0), "damping": (0.02, 1.0), "limit": (0.1, 2.0)}}  # for compare
 
     def __init__(self, stiffness: float, damping: float, limit: float) -> None:
         self.stiffness, self.damping, self.limit = stiffness, damping, limit
@@ -84,6 +85,7 @@ class {name}:
     """
 
     kind = "end_point"
+    ranges = {{"stiffness": (500.0, 8000.0), "damping": (20.0, 400.0), "integral": (500.0, 20000.0)}}  # for compare
 
     def __init__(self, stiffness: float, damping: float, integral: float, dt: float) -> None:
         self.stiffness, self.damping, self.integral, self.dt = stiffness, damping, integral, dt
@@ -133,6 +135,7 @@ class {name}:
     """
 
     kind = "holding"
+    ranges = {{"gain": (0.005, 0.1)}}  # for compare
 
     def __init__(self, gain: float, desired_force: float, dt: float) -> None:
         self.gain, self.desired_force, self.dt = gain, desired_force, dt

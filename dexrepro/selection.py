@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from dexrepro import chapters
 from dexrepro.checks import FILES, is_whole
+from dexrepro.claims import cases_in
 from dexrepro.config import SETTINGS, as_written, compose_chapter, offer, own_keys
 from dexrepro.errors import InputError, existing_folder, folder_named, nearest, refused
 from dexrepro.experiment import Experiment
@@ -64,6 +65,20 @@ def _with_claim(claim: str, numbers: list[str]) -> list[str]:
     if owner[claim] not in numbers:
         raise InputError(f"claim = {claim} is of chapter {owner[claim]}, not of {', '.join(numbers)}")
     return [owner[claim]]
+
+
+def needs_of(words: Sequence[str]) -> list[str]:
+    """Words of which ``claim=ID`` is replaced by the experiment and the cases that the claim is about."""
+    found = [word for word in words if not word.startswith("claim=")]
+    for name in [word.partition("=")[2].strip("'\"") for word in words if word not in found]:
+        chapter = chapters.load(_with_claim(name, chapters_of(found)[0])[0])
+        claim = next(claim for claim in chapter.claims if claim.id == name)
+        if not claim.experiment:
+            raise InputError(f"claim = {name} is not testable: {claim.not_testable}")
+        cases, over_several = cases_in(claim.metrics)
+        given = over_several or any(word.startswith("case=") for word in found)
+        found += [f"only={claim.experiment}", *([] if given else [f"case=[{','.join(cases)}]"])]
+    return found
 
 
 def select(chapter: str, only: str | Sequence[str] | None, figure: Any) -> list[Experiment]:
@@ -171,6 +186,7 @@ def for_hydra(arguments: Sequence[str], overrides: Sequence[str], extra_dir: str
 def quoted(argument: str) -> str:
     """A word as Hydra's grammar wants it: it refuses an int as a group choice, reads 2.10 as 2.1, and keeps for itself
     many characters of file names, such as brackets, ``=``, commas, ``~`` and all beyond ASCII."""
+    argument = re.sub(r"^([+~]*\w[\w.]*)\s+=\s*", r"\1=", argument)  # spaces are no part of a key
     if match := re.fullmatch(r"(chapter|figure)=([\w.]+(?:,[\w.]+)*)", argument):
         values = match[2].split(",")
         return argument if match[2] == "null" else f"{match[1]}=" + ",".join(f"'{value}'" for value in values)

@@ -43,6 +43,7 @@ from dexrepro.storage import digest_of, read_json, write_json
 from dexrepro.study.draws import within
 
 ROUNDS, SHRINK = 4, 0.4  # boxes around the best, each this share as wide as the one before
+PERIODS = ("dt", "control_period", "step")  # names of the time between two calls of a law, which is no gain of it
 EDGE = 0.02  # share of a range that counts as its edge
 NO_BETTER = "no run is better than the case as it stands"
 ALIKE = "every run gives the same: what was searched does not change this metric"
@@ -128,7 +129,9 @@ def search_of(
 
     Without parameters those of the case's law are tuned, see ``_of_laws``. Raises InputError with one sentence.
     """
-    experiment, _, name = case.partition(".")
+    experiment, dot, name = case.partition(".")
+    if not dot:
+        raise refused("case", case, "be EXPERIMENT.CASE, such as skill_reuse.none")
     numbers, overrides = chapters_of([f"only={experiment}", *overrides])
     if needed := lacking(chapters.load(numbers[0]).experiment(experiment)):
         raise InputError(f"{experiment} {needed}")
@@ -218,7 +221,8 @@ def _of_laws(
     that it shares with other experiments, not with the others of its own, such as the force they all hold.
     """
     of_law = tuple(f"{law}." for law in _laws(values))
-    found = {key: span for key, span in declared.items() if key.startswith(of_law)}
+    tunable = {key: span for key, span in declared.items() if key.rpartition(".")[2] not in PERIODS}
+    found = {key: span for key, span in tunable.items() if key.startswith(of_law)}
     if found:
         return found, False
     numbers = {key: value for key, value in leaves(values) if key.startswith(of_law) and isinstance(value, float)}
@@ -414,6 +418,8 @@ def joined(search: Search, target: str, law: type) -> Search | None:
     spans: dict[str, Range] = dict(getattr(law, "ranges", {}))
     needs = set(getattr(law, "needs", ()))
     known = {key.rpartition(".")[2]: value for key, value in leaves(search.values)}
+    if periods := [known[key] for key in PERIODS if key in known]:
+        known["dt"] = periods[0]
     arguments: dict[str, Any] = {"_target_": target, **({"_partial_": True} if needs else {})}
     for name, parameter in inspect.signature(law).parameters.items():
         if name in spans:

@@ -27,7 +27,7 @@ def offered(line: str, folder: Path) -> list[str]:
     ("line", "some", "none"),
     [
         ("dexrepro ", ["run", "check", "study", "completion"], []),
-        ("dexrepro run ", ["chapter=", "only=", "movement_estimation."], ["claim="]),
+        ("dexrepro run ", ["chapter=", "claim=", "movement_estimation."], ["samples="]),
         ("dexrepro study ", ["chapter=", "claim=", "samples="], ["movement_estimation."]),
         ("dexrepro run chapter=", ["chapter=1", "chapter=8"], []),
         ("dexrepro run chapter=2 only=", ["only=movement_estimation"], ["only=dartboard"]),

@@ -42,7 +42,7 @@ def test_a_command_takes_what_its_help_says_and_nothing_else(command: str) -> No
 
 
 def test_run_takes_the_settings_of_the_configuration() -> None:
-    assert {"chapter", *SETTINGS} == set(TAKEN["run"])
+    assert {"chapter", "claim", *SETTINGS} == set(TAKEN["run"])
 
 
 def test_every_key_of_the_code_is_in_the_table() -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from dexrepro import cli
+from dexrepro.checks import check_keys, check_lengths, check_types
 from dexrepro.commands.run import run_command
 from dexrepro.errors import InputError
 from dexrepro.plan import plan_chapter
@@ -53,6 +54,11 @@ def result(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ),
         ("decay.step=[0.1,0.2]", "decay.step = [0.1, 0.2] is not allowed: it must be a number"),
         ("decay", "'decay' is not an override of the form key=value, such as"),
+        ("+decay.cases.größe={}", "; a key has letters from a to z alone"),
+        ("decay.cases.mine={rate: 3}", "decay has no case 'mine': add it, '+decay.cases.mine={rate: 3}'"),
+        ("decay.rate=1,2", "'decay.rate=1,2' is a sweep, which needs -m, a run for each value; one list is written"),
+        ("sed=3", "unknown key 'sed': did you mean 'seed'?"),
+        ("claim=C90.1", "unknown claim 'C90.1': did you mean 'C90.01'?"),
     ],
 )
 def test_a_wrong_value_names_its_key_and_what_is_allowed(toy: Path, override: str, sentence: str) -> None:
@@ -63,6 +69,34 @@ def test_a_wrong_value_names_its_key_and_what_is_allowed(toy: Path, override: st
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("check", "given", "sentence"),
+    [
+        (check_types, {"on": 1}, "e.on = 1 is not allowed: it must be true or false"),
+        (check_types, {"on": "maybe"}, "e.on = 'maybe' is not allowed: it must be true or false"),
+        (check_types, {"law": "my_law.Mine"}, "e.law = 'my_law.Mine' is not allowed: it must hold keys with values"),
+        (check_lengths, {"place": 1}, "e.place = 1 is not allowed: it must have 2 values"),
+        (check_lengths, {"lengths": 1}, "e.lengths = 1 is not allowed: it must have 2 values"),
+        (check_keys, {"figure": {"wide": 3}}, "unknown key 'e.figure.wide': did you mean 'width'?"),
+    ],
+)
+def test_a_value_of_another_kind_or_a_key_that_is_not_there_is_refused(
+    check: Callable[..., None], given: dict[str, object], sentence: str
+) -> None:
+    shipped = {"on": True, "law": {"_target_": "a.B"}, "place": [0, 1], "lengths": [1, 1], "figure": {"width": 2}}
+    with pytest.raises(InputError) as caught:
+        check(given, shipped, "e")
+    assert sentence in str(caught.value)
+    check({"on": False, "law": {"_target_": "a.C", "gain": 1}, "place": [2, 3], "lengths": [1]}, shipped, "e")
+
+
+def test_a_value_that_the_cases_to_run_do_not_have_is_said_to_be_without_effect(toy: Path) -> None:
+    differs = {case: plan_chapter("90", ["only=decay", "decay.rate=3", f"case={case}"])[0][0].differs
+               for case in ("fast", "plain")}  # fmt: skip
+    assert differs["fast"][0].endswith("(book: 2.0), without effect: every case that is run sets its own")
+    assert differs["plain"][0] == "rate=3 (book: 2.0)"
+
+
 def test_null_still_turns_a_number_off_that_is_no_quantity(toy: Path) -> None:
     plans, _ = plan_chapter("90", ["only=decay", "decay.gain=null"])
     assert plans[0].jobs[0].config["gain"] is None
@@ -71,7 +105,7 @@ def test_null_still_turns_a_number_off_that_is_no_quantity(toy: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        (b"only: [a\n b: c: d\n", "bad.yaml is no YAML file: while parsing a flow sequence"),
+        (b"only: [a\n b: c: d\n", "bad.yaml is no YAML file: line 2: while parsing a flow sequence"),
         (b"\tonly: decay\n", "bad.yaml is no YAML file"),
         (b"# mine\nonly: caf\xe9\n", "bad.yaml: line 2 is not UTF-8; save the file as UTF-8"),
         (b"- a\n", "bad.yaml holds no keys"),

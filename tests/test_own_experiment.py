@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import os
+import pickle
 import shutil
 import time
 from pathlib import Path
@@ -11,6 +13,7 @@ import pytest
 from conftest import TOY, Command
 
 from dexrepro import chapters
+from dexrepro.unread import Watched, unread
 
 
 @pytest.fixture
@@ -98,6 +101,9 @@ def test_an_experiment_that_is_added_to_a_known_folder_is_found(mine: Command) -
     assert (code, "glow:" in text) == (0, True), text
 
 
+CLAIM = "from dexrepro.claims import Claim, less\nclaim = Claim('lab.09', '', 'falls', less('fast.final', 1))\n"
+
+
 @pytest.mark.parametrize(
     ("name", "content", "said"),
     [
@@ -105,6 +111,21 @@ def test_an_experiment_that_is_added_to_a_known_folder_is_found(mine: Command) -
         ("lab/fade/claims.py", "\nCLAIMS = (1 / 0,)", "lab/fade/claims.py:2: ZeroDivisionError: division by zero"),
         ("lab/fade/figures.py", "import nosuch", "figures.py:1: ModuleNotFoundError: No module named 'nosuch'"),
         ("lab/__init__.py", "raise SystemExit(3)", "lab/__init__.py:1: SystemExit: 3"),
+        (
+            "lab/fade/claims.py",
+            f"{CLAIM}CLAIMS = claim",
+            "fade/claims.py: CLAIMS must be a tuple of Claim, a comma behind",
+        ),
+        (
+            "lab/fade/claims.py",
+            "CLAIMS = ('lab.01',)",
+            "CLAIMS must be a tuple of Claim, a comma behind each; it has 'lab",
+        ),
+        ("lab/fade/claims.py", f"{CLAIM}CLAIMS = (claim,)", "lab.09 is about 'fast.final', and no experiment of the"),
+        ("lab/fade/figures.py", "FIGURES = {'lab.10': 'falls'}", "FIGURES must have a Figure for each name; it has 'f"),
+        ("lab/fade/figures.py", "FIGURES = ['lab.10']", "FIGURES must have a Figure for each name; it has ["),
+        ("lab/fade/config.yaml", "a:\n\tb: 2\n", "that cannot start any token; a tab cannot indent, write spa"),
+        ("lab/fade/config.yaml", "a: 1\na: 2\n", "is no YAML file: line 2: while constructing a mapping: found dupl"),
         ("lab/fade/config.yaml", None, "experiment 'fade' has no block in its chapter's configuration"),
     ],
 )
@@ -209,6 +230,42 @@ def test_a_figure_that_is_not_drawn_is_named(mine: Command) -> None:
     path.write_text(path.read_text().replace(DRAW, "    return {}"))
     status, text = mine("run --experiments more chapter=lab only=fade workers=1")
     assert (status, "fade: draw in figures.py made no lab.10" in text) == (0, True), text
+
+
+def test_a_key_that_nothing_reads_is_named(mine: Command) -> None:
+    path = Path("more/lab/fade/config.yaml")
+    path.write_text(f"{path.read_text()}raet: 3.0\nfigure: {{label: x}}\nbounds: {{low: 1, hihg: 2}}\n")
+    code = Path("more/lab/fade/experiment.py")
+    code.write_text(code.read_text().replace("    if config.pause:", "    config.bounds.low\n    if config.pause:"))
+    figures = Path("more/lab/fade/figures.py")
+    figures.write_text(figures.read_text().replace("label=case", "label=case + config.figure.label"))
+    for _ in range(2):  # also when it is taken from the cache
+        status, text = mine("run --experiments more chapter=lab only=fade workers=1")
+        assert (status, "fade.raet, fade.bounds.hihg: no case that was run reads them" in text) == (0, True), text
+    status, text = mine("run --experiments more only=fade fade.raet=2 case=plain workers=1")
+    assert (status, "warning: fade.raet, " in text) == (0, True), text
+
+
+def test_a_configuration_knows_what_was_read_of_it() -> None:
+    config = Watched.of(
+        {"a": {"b": 1, "c": 2}, "d": [{"e": 1, "f": 2}], "g": {"h": 1}, "i": {"j": {"k": 1}}, "seed": 0}
+    )
+    assert [*unread(config)] == ["a", "d", "g", "i"]
+    assert (config.a.b, config["d"][0].get("e"), {**config.g}) == (1, 1, {"h": 1})
+    assert dict(config.i) == {"j": {"k": 1}}
+    assert "nothing" not in config
+    assert config.get("nothing", 3) == 3
+    assert [*unread(config)] == ["a.c", "d.0.f", "i.j.k"]
+    assert copy.deepcopy(config) == pickle.loads(pickle.dumps(config)) == config
+    assert [*unread(config)] == []
+
+
+def test_a_claim_about_a_metric_that_is_not_there_is_named(mine: Command) -> None:
+    path = Path("more/lab/fade/claims.py")
+    path.write_text(path.read_text().replace("fade.fast.final", "fade.fats.final"))
+    status, text = mine("run --experiments more chapter=lab only=fade workers=1")
+    said = "lab.01 is not evaluated, there is no metric 'fade.fats.final': did you mean 'fade.fast.final'?"
+    assert (status, said in text) == (0, True), text
 
 
 def test_a_claim_that_is_there_twice_is_named(mine: Command) -> None:

@@ -9,7 +9,8 @@ import pytest
 
 from dexrepro.cli import main
 from dexrepro.overrides import parsed
-from dexrepro.selection import chapters_of, of_chapter, quoted
+from dexrepro.result import Result
+from dexrepro.selection import chapters_of, needs_of, of_chapter, quoted
 from dexrepro.storage import read_json
 
 
@@ -46,6 +47,7 @@ def test_names_of_files_are_typed_as_in_any_shell_tool(key: str, name: str) -> N
         ("results=1e3", "1e3"),
         ("+scene=7", "7"),
         ("results='a b'", "a b"),
+        ("a.duration = 2", 2),
     ],
 )
 def test_lists_of_names_and_names_like_numbers_are_understood(word: str, value: Any) -> None:
@@ -73,6 +75,16 @@ def test_a_name_with_a_comma_is_a_name_where_there_is_such_a_file(
 )  # fmt: skip
 def test_hydras_own_grammar_is_left_alone(word: str) -> None:
     assert quoted(word) == word
+
+
+def test_a_claim_is_run_by_its_cases(toy: Path) -> None:
+    assert needs_of(["claim=C90.01", "seed=1"]) == ["seed=1", "only=decay", "case=[fast,plain]"]
+    assert needs_of(["claim=C90.01", "case=gain*"]) == ["case=gain*", "only=decay"]
+    assert main(["run", "claim='C90.01'", "quiet=true", "workers=1"]) == 0
+    (folder,) = Path("results/runs").glob("decay-*")
+    verdicts = {claim["id"]: claim["verdict"] for claim in Result(folder).claims}
+    assert verdicts["C90.01"] == "reproduced"
+    assert verdicts["C90.03"] == "not evaluated"
 
 
 def test_some_cases_run_alone_as_a_result_of_their_own(toy: Path, capsys: pytest.CaptureFixture[str]) -> None:

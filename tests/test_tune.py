@@ -15,6 +15,7 @@ from dexrepro.cache_key import content_of
 from dexrepro.checks import value_at
 from dexrepro.errors import InputError
 from dexrepro.provenance import provenance
+from dexrepro.scaffold import new_controller
 
 RESULTS = Path("results")
 Command = Callable[[str], tuple[int, str]]
@@ -263,3 +264,31 @@ def test_what_is_called_the_best_of_a_search_has_one_and_rivals_have_as_many_run
         about = search.experiment, search.metric, len(search.ranges) > 1
         budgets.setdefault(about, set()).add(len(stored["runs"]))
     assert all(len(found) == 1 for found in budgets.values()), budgets
+
+
+@pytest.mark.parametrize(
+    ("kind", "case"),
+    [("joint", "bounded_tracking.tuned"), ("end_point", "skill_reuse.none"), ("holding", "holding_comparison.s1")],
+)
+def test_a_new_controller_can_be_compared_as_it_is(
+    kind: str, case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    new_controller(f"Fresh{kind.title().replace('_', '')}", kind, tmp_path)
+    ((target, law),) = tune.laws_in(tmp_path).items()
+    joined = tune.joined(tune.search_of(case, "rmse", 1), target, law)
+    assert joined is not None
+    assert joined.values["law"].get("dt", 1e-3) == 1e-3
+    given = {*joined.values["law"]} - {"_target_", "dt", "desired_force"}
+    assert {key.removeprefix("law.") for key in joined.ranges} == given
+
+
+def test_a_case_is_named_with_its_experiment() -> None:
+    with pytest.raises(InputError, match=r"case = none is not allowed: it must be EXPERIMENT\.CASE"):
+        tune.search_of("none", "rmse_mm", 1)
+
+
+def test_the_control_period_is_no_gain_of_a_law() -> None:
+    ranges = tune.search_of("skill_reuse.none", "rmse_mm", 1).ranges
+    assert "law.floor" in ranges
+    assert "law.step" not in ranges

@@ -146,6 +146,12 @@ def load(number: str) -> Chapter:
     claims += _part(package, folder, "claims", "CLAIMS")
     if twice := [name for name, count in Counter(claim.id for claim in claims).items() if count > 1]:
         raise InputError(f"{folder}: {twice[0]} names more than one claim; give each an id of its own")
+    for claim in claims:
+        if lost := [name for name in claim.metrics if name.partition(".")[0] not in found]:
+            raise InputError(
+                f"{folder}: {claim.id} is about '{lost[0]}', and no experiment of the chapter has that name; a metric "
+                f"of the claim's own begins with a dot, '.{lost[0]}'"
+            )
     return Chapter(
         number,
         str(getattr(package, "TITLE", folder.name)),

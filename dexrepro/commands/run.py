@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
 from dexrepro.commands import FAILED, OK, SHOWN, command, option, out, say, show_table, warn
-from dexrepro.errors import InputError, importable
+from dexrepro.errors import InputError, importable, nearest
 from dexrepro.keys import SELECTION
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ examples:
 
 @command(
     "simulate, measure and draw what is not there yet",
-    (*SELECTION, "case", "seed", "engine", "workers", "case_timeout", "force", "quiet", "gui"),
+    (*SELECTION, "claim", "case", "seed", "engine", "workers", "case_timeout", "force", "quiet", "gui"),
     option("-m", "--multirun", help="a sweep: each combination of values is a job"),
     option("-cd", "--config-dir", metavar="DIR", help="a folder of your own with configurations and laws"),
     option("-c", "--cfg", choices=["job", "hydra", "all"], help="print the configuration, run nothing"),
@@ -47,10 +47,10 @@ examples:
 )  # fmt: skip
 def run_command(arguments: list[str]) -> int:
     """``dexrepro run``: Hydra's own modes go to Hydra, everything else is planned and run here."""
-    from dexrepro.selection import for_hydra, quoted
+    from dexrepro.selection import for_hydra, needs_of, quoted
 
     folder = ("--config-dir", "-cd")  # what follows is a name as it is
-    arguments = [word if last in folder else quoted(word) for last, word in zip(["", *arguments], arguments)]
+    arguments = [word if last in folder else quoted(word) for last, word in zip(["", *arguments], needs_of(arguments))]
     extra_dir, overrides = _config_dir_option(arguments)
     if any(argument.split("=")[0] in HYDRA_FLAGS for argument in arguments):
         given = [text for text in overrides if not text.startswith("-") and "=" in text]
@@ -121,6 +121,7 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
     from dexrepro.result import Result
     from dexrepro.runner import run_plans
     from dexrepro.selection import chapters_of, of_chapter, positive_workers
+    from dexrepro.unread import without_effect
 
     numbers, rest = chapters_of(overrides, extra_dir)
     plans: list[Plan] = []
@@ -146,10 +147,28 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
         _print_summary(results, outcome.differs, skipped)
     for text in dict.fromkeys(text for result in results.values() for text in result.warnings):
         warn(f"warning: {text}")
+    for name, result in results.items():
+        if keys := without_effect(result.run):
+            warn(f"warning: {', '.join(keys[:SHOWN])}: no case that was run reads {'it' if len(keys) == 1 else 'them'}")
+        for text in _unmeasured(name, result):
+            warn(f"warning: {text}")
     for name in outcome.assembled:
         if left := _undrawn(name, results[name]):
             warn(f"warning: {name}: draw in figures.py made no {', '.join(left)}")
     return outcome
+
+
+def _unmeasured(name: str, result: Result) -> Iterator[str]:
+    """Claims about metrics that an experiment of the user's, run whole, does not have, as sentences."""
+    from dexrepro import chapters
+
+    chapter = result.run["chapter"]
+    if chapter == chapters.OWN or not chapters.is_added(chapter) or result.run["differs"]:
+        return
+    for claim in chapters.load(chapter).claims_of(name):
+        absent = [key for key in claim.metrics if key.startswith(f"{name}.") and key not in result.metrics]
+        for key in absent[:1]:
+            yield f"{claim.id} is not evaluated, there is no metric '{key}': {nearest(key, result.metrics)}"
 
 
 def _undrawn(name: str, result: Result) -> list[str]:

@@ -25,7 +25,8 @@ from dexrepro.study import draws, summaries
 
 def show(word: str, results: Path) -> Iterator[str]:
     """Lines about whatever has this name. Raises InputError with the nearest names where nothing has."""
-    asked = re.sub(r"^(eqs?|fig|table|figure|equation)\.?\s*", "", word.strip(), flags=re.IGNORECASE).strip("() ")
+    kinds = r"^((claim|only|figure)(=|\s+)|(eqs?|fig|table|figure|equation)\.?\s*)"
+    asked = re.sub(kinds, "", word.strip(), flags=re.IGNORECASE).strip("() ")
     only_equation = word.strip().lower().startswith(("eq", "("))
     found = False
     for kind in (_equation,) if only_equation else KINDS:
@@ -33,7 +34,11 @@ def show(word: str, results: Path) -> Iterator[str]:
             found = True
             yield line
     if not found:
-        raise InputError(f"nothing is called '{word}': {nearest(asked, _names())}")
+        near = nearest(asked, _names())
+        known = "name a claim, figure, table, equation, symbol, law, parameter, experiment or erratum: dexrepro list"
+        if chapter := re.fullmatch(r"chapter\W*(\w+)", word.strip(), flags=re.IGNORECASE):
+            near = known = f"see: dexrepro list chapter={chapter[1]}"
+        raise InputError(f"nothing is called '{word}': {near if near.startswith('did') else known}")
 
 
 def _names() -> list[str]:
@@ -223,12 +228,13 @@ def _set(word: str, results: Path) -> Iterator[str]:
         for row in parameters.table(experiment, composed, origins, {}) if inside else ():
             if f"{row['key']}.".startswith(f"{word}."):  # also what it inherits
                 yield f"{_parameter(row)}  (chapter {number})"
-        for key in [key for key in origins if word in (key, key.partition(".")[2]) or key.endswith(f".{word}")]:
+        keys = {key for key in origins if word in (key, key.partition(".")[2]) or key.endswith(f".{word}")}
+        for key in [key for key in origins if key in keys]:
             row = {"key": key, "value": parameters.value_of(composed, key), **parameters.shown(origins[key])}
             yield f"{_parameter(row)}  (chapter {number})"
             yield from _search(key)
         for row in parameters.index(composed, origins, ()):
-            if row["plain"] == word:
+            if row["plain"] == word and row["key"] not in keys:
                 yield f"{_parameter(row)}  (chapter {number})"
 
 

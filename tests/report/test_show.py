@@ -62,6 +62,15 @@ def test_an_unknown_word_gets_the_nearest() -> None:
         InputError, match=r"nothing is called 'movement_estimaton': did you mean 'movement_estimation'\?"
     ):
         said("movement_estimaton")
+    with pytest.raises(InputError, match=r"'zzzz': name a claim, figure, table, .* or erratum: dexrepro list"):
+        said("zzzz")
+    with pytest.raises(InputError, match=r"'chapter=4': see: dexrepro list chapter=4"):
+        said("chapter=4")
+
+
+def test_a_claim_is_found_as_other_commands_name_it_and_a_parameter_is_said_once() -> None:
+    assert said("claim=C4.01") == said("C4.01")
+    assert said("gamma").count("settling_time.gamma") == 1
 
 
 def test_a_result_here_goes_before_what_is_stored(toy_result: Path) -> None:
