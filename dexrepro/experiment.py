@@ -240,18 +240,15 @@ class Experiment:
         with reading(self.folder):
             found = getattr(importlib.import_module(f"{self.package}.{module}"), name, default)
         if of is not None:
-            named = isinstance(default, Mapping)
-            whole = isinstance(found, Mapping if named else tuple | list)
-            wrong = (
-                [item for item in (found.values() if named else found) if not isinstance(item, of)]
-                if whole
-                else [found]
-            )
-            if wrong:
-                must = (
-                    f"have a {of.__name__} for each name"
-                    if named
-                    else f"be a tuple of {of.__name__}, a comma behind each"
-                )
-                raise InputError(f"{path}: {name} must {must}; it has {textwrap.shorten(repr(wrong[0]), 60)}")
+            _check_each(found, of, isinstance(default, Mapping), f"{path}: {name}")
         return found
+
+
+def _check_each(found: Any, of: type, named: bool, what: str) -> None:
+    """Refuse what is no mapping from names to things of a class, or no tuple of them."""
+    must = f"have a {of.__name__} for each name" if named else f"be a tuple of {of.__name__}, a comma behind each"
+    many = isinstance(found, Mapping) if named else isinstance(found, tuple | list)
+    items = (found.values() if named else found) if many else [found]
+    for item in items:
+        if not many or not isinstance(item, of):
+            raise InputError(f"{what} must {must}; it has {textwrap.shorten(repr(item), 60)}")
