@@ -6,7 +6,7 @@ import fnmatch
 import importlib.util
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib.metadata import version
@@ -155,7 +155,12 @@ def matching(patterns: Sequence[str], names: Sequence[str], of: str = "") -> lis
     for pattern in patterns:
         if not fnmatch.filter(names, pattern):
             raise InputError(f"unknown case '{pattern}'{of}: {nearest(pattern, dict.fromkeys(names))}")
-    return [name for name in names if any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)]
+    return _meant(patterns, names)
+
+
+def _meant(patterns: Sequence[object], names: Iterable[str]) -> list[str]:
+    """The names that patterns mean; of another experiment they may mean none."""
+    return [name for name in names if any(fnmatch.fnmatchcase(name, str(pattern)) for pattern in patterns)]
 
 
 def lacking(experiment: Experiment) -> str:
@@ -231,8 +236,7 @@ def _differs(
     listed = differences({"cases": config[name].get("cases")}, {"cases": shipped[name].get("cases")})
     reached: dict[str, str] = {}  # what changes in a case that is run, by its key there; the first case that has it
     wanted = config["case"] if isinstance(config["case"], list) else [config["case"] or "*"]
-    some = {case for case in cases if any(fnmatch.fnmatchcase(case, str(pattern)) for pattern in wanted)}
-    others = {*cases} - some
+    others = {*cases} - {*_meant(wanted, cases)}
     mine, theirs = ({case: kept[case] for case in kept if case not in others} for kept in (cases, book))
     for text in differences(mine, theirs):
         case, _, key = key_of(text).partition(".")

@@ -127,8 +127,18 @@ class Table:
     @property
     def dated(self) -> bool:
         """Whether the times are a clock's."""
-        first = self._split(self.lines[self.body[0]], self.separator) if self.body else [""]
-        return self.wanted[0] == "time" and _seconds(self._chosen(first)[0]) is not None
+        return self.wanted[0] == "time" and _seconds(self._first) is not None
+
+    @property
+    def _first(self) -> str:
+        """The first entry that is wanted."""
+        return self._chosen(self._split(self.lines[self.body[0]], self.separator))[0] if self.body else ""
+
+    def _unwrapped(self, time: Array) -> Array:
+        """A clock's times (N,) [s], one turn on behind midnight, or behind the full hour where they have none."""
+        turn = 3600 if self._first.count(":") == 1 else 86400
+        alone = time.size and time.max() < turn  # without dates
+        return time + turn * np.cumsum(np.diff(time, prepend=time[0]) < -turn / 2) if alone else time
 
     def numbers(self) -> tuple[Array, Array]:
         """The wanted columns (N, d), and the number of each row's line (N,), from 1."""
@@ -167,7 +177,10 @@ class Table:
                 raise ValueError(f"line {k + 1} holds '{self.lines[k].strip()[:SHOWN]}': {must}")
             data.append(values)
             lines.append(k + 1)
-        return np.array(data, dtype=float).reshape(-1, len(self.wanted)), np.array(lines)
+        table = np.array(data, dtype=float).reshape(-1, len(self.wanted))
+        if dated:
+            table[:, 0] = self._unwrapped(table[:, 0])
+        return table, np.array(lines)
 
 
 def mark_in(line: str) -> str | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from datetime import datetime, timedelta
 from pathlib import Path
 from time import process_time
 
@@ -210,6 +211,13 @@ def test_dates_and_clocks_are_times(tmp_path: Path, form: str, separator: str, m
     assert position == pytest.approx(WANTED)
     with pytest.raises(ValueError, match="its times are a clock's; leave out time_unit=ms"):
         read_path(file, Format(time_unit="ms"), axes=2)
+
+
+@pytest.mark.parametrize("form", ["{:%H:%M:%S.%f}", "{:%M:%S.%f}"])
+def test_a_clock_goes_on_behind_midnight_and_the_full_hour(tmp_path: Path, form: str) -> None:
+    clock = [datetime(2026, 12, 31, 23, 59, 59, 100000) + timedelta(seconds=0.25 * k) for k in range(10)]
+    file = write(tmp_path, [f"{form.format(now)},{k},0" for k, now in enumerate(clock)], "time,x,y\n")
+    assert read_path(file, axes=2)[0] == pytest.approx(np.arange(10) * 0.25)
 
 
 @pytest.mark.parametrize(
