@@ -21,6 +21,7 @@ from typing import Any
 
 from dexrepro import chapters
 from dexrepro.checks import is_number
+from dexrepro.claims import cases_in
 from dexrepro.config import baseline_dir
 from dexrepro.damage import check_result, read_table
 from dexrepro.errors import InputError, one_line
@@ -197,7 +198,8 @@ def _missing(chapter: str, experiment: str, results: Path, case: str = "") -> Re
 
 
 def check_cases(chapter: str, results: Path, only: Sequence[str], case: str) -> ChapterReport:
-    """The same for the metrics of the cases that a word ``case=...`` chooses, from a run of them or else of all."""
+    """The same for the metrics of the cases that a word ``case=...`` chooses, and the claims that are about no other,
+    from a run of them or else of all."""
     plans, _ = plan_chapter(chapter, [*selecting(results, only), case], write=False)
     report = ChapterReport(chapter)
     for plan in plans:
@@ -205,14 +207,21 @@ def check_cases(chapter: str, results: Path, only: Sequence[str], case: str) -> 
         folder = next((place for place in places if (place / "run.json").exists()), None)
         if folder is None:
             raise _missing(chapter, plan.experiment, results, f" {case}")
-        check_result(folder, "metrics.json")
-        run = read_json(folder / "run.json")
+        check_result(folder, "metrics.json", "claims.json")
+        run, cases = read_json(folder / "run.json"), {job.case for job in plan.jobs}
         if reason := outdated(plan, run | {"contents": {c: run["contents"].get(c) for c in plan.contents}}):
             report.outdated.append(f"{plan.experiment}: {reason}")
-        begins = tuple(f"{plan.experiment}.{job.case}." for job in plan.jobs)
-        made, stored = read_json(folder / "metrics.json"), Baseline.of(chapter, plan.experiment).metrics
-        chosen = ({name: item for name, item in all_.items() if name.startswith(begins)} for all_ in (made, stored))
+        begins, stored = tuple(f"{plan.experiment}.{case}." for case in cases), Baseline.of(chapter, plan.experiment)
+        chosen = (
+            {name: item for name, item in every.items() if name.startswith(begins)}
+            for every in (read_json(folder / "metrics.json"), stored.metrics)
+        )
         _compare(report, plan.experiment, *chosen)
+        needed = {claim.id: cases_in(claim.metrics) for claim in chapters.load(chapter).claims_of(plan.experiment)}
+        about = {name for name, (own, over_several) in needed.items() if cases.issuperset(own) and not over_several}
+        claims = [claim for claim in read_json(folder / "claims.json") if claim["id"] in about]
+        verdicts = {name: verdict for name, verdict in stored.claims.items() if name in about}
+        _compare_claims(report, plan.experiment, claims, verdicts)
     return report
 
 

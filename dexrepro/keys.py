@@ -19,6 +19,7 @@ KEYS = {
     "style": ("NAME", "slides, paper or dark: figures for another place, in results/figures/NAME"),
     "allow": ("MODULE", "modules of somebody else's result that you trust"),
     "claim": ("ID", "the study of one claim's experiment"),
+    "check.claim": ("ID", "one claim, with the metrics of the cases that it is about"),
     "run.claim": ("ID", "what one claim needs: those cases of its experiment that it is about"),
     "study.case": ("NAME", "some cases, by name or pattern, for the claims that are about no other"),
     "samples": ("NUMBER", "draws; where it is not given, until every claim is decided (16 to 100)"),

@@ -198,6 +198,17 @@ def test_check_writes_nothing_and_reads_what_it_may_not_write(stored: Path, toy:
         folder.chmod(0o755 if folder.is_dir() else 0o644)
 
 
+def test_a_claim_is_checked_by_its_cases(stored: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    edit(stored, lambda data: data["claims"].update({"C90.01": "not reproduced", "C90.03": "not reproduced"}))
+    capsys.readouterr()
+    assert cli.main(["check", "claim=C90.01"]) == 1
+    text = capsys.readouterr().out
+    assert "2 claims, 1 verdicts changed" in text, "C90.02 is about one of the cases"
+    assert "C90.01: reproduced, stored: not reproduced" in text
+    assert cli.main(["check", "chapter=90", "only=decay", "case=plain,gain*"]) == 1, "C90.01 is about others, too"
+    assert "C90.03: reproduced, stored: not reproduced" in capsys.readouterr().out
+
+
 def test_check_says_what_was_made_by_another_configuration_or_code(
     stored: Path, toy_book: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @command(
-    "compare results with the stored baselines, simulate nothing", (*SELECTION, "case", "workers"),
+    "compare results with the stored baselines, simulate nothing", (*SELECTION, "claim", "case", "workers"),
     option("--json", help="for programs, see docs/schemas"),
     option("--update", help="run, perturb, and store new baselines"),
     option("--accept", nargs="+", default=[], metavar="ID", help="claims whose verdict may change"),
@@ -31,12 +31,12 @@ def check_command(options: argparse.Namespace) -> int:
     """Exit status 0: same; 1: drift; 2: results missing."""
     from dexrepro import baselines
     from dexrepro.physics.engine import REFERENCE, is_installed
-    from dexrepro.selection import existing, quoted, selected
+    from dexrepro.selection import existing, needs_of, quoted, selected
 
     accepted = [word for word in options.accept if "=" not in word]  # what selects may stand behind them
     words = [*options.selection, *(word for word in options.accept if "=" in word)]
-    numbers, only, results, workers, extra = selected(words, "check")
-    case = next((quoted(f"case={value}") for value in extra.values()), None)
+    numbers, only, results, workers, extra = selected(needs_of(words), "check")
+    case = quoted(f"case={extra['case']}") if "case" in extra else None
     _check_accepted(accepted, numbers, options.update)
     if options.update:
         if case:
