@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import subprocess
 import sys
@@ -22,28 +21,25 @@ TUTORIALS = sorted((ROOT / "docs/tutorials").glob("*.ipynb"))
 
 @pytest.fixture(scope="module")
 def manual(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The manual, its tutorials not run."""
+    """The manual as ``make docs`` builds it: its tutorials run."""
     folder = tmp_path_factory.mktemp("manual")
     command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "--keep-going", "--quiet"]
-    command += ["-D", "nb_execution_mode=off", str(ROOT / "docs"), str(folder)]
+    command += [str(ROOT / "docs"), str(folder)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, timeout=900)
     assert done.returncode == 0, done.stderr
     return folder
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("path", TUTORIALS, ids=lambda path: path.stem)
-def test_a_tutorial_is_stored_without_outputs_and_runs(path: Path, tmp_path: Path) -> None:
-    import nbformat
-    from nbclient import NotebookClient
-
-    notebook = nbformat.read(path, as_version=4)
-    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+def test_a_tutorial_is_stored_without_outputs(path: Path) -> None:
+    cells = [cell for cell in json.loads(path.read_text("utf-8"))["cells"] if cell["cell_type"] == "code"]
     assert cells
-    assert not [cell for cell in cells if cell.outputs or cell.execution_count]
-    tools = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    client = NotebookClient(notebook, timeout=900, resources={"metadata": {"path": str(tmp_path)}})
-    client.execute(env={**os.environ, "PATH": tools, "PYTHONPATH": str(ROOT)})
+    assert not [cell for cell in cells if cell["outputs"] or cell["execution_count"]]
+
+
+@pytest.mark.slow
+def test_the_manual_shows_what_the_tutorials_give_and_they_write_nothing_beside_themselves(manual: Path) -> None:
+    assert all("cell_output" in (manual / f"tutorials/{path.stem}.html").read_text("utf-8") for path in TUTORIALS)
     assert not list(ROOT.glob("docs/tutorials/results"))
 
 
