@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from dexrepro import chapters, tune
+from dexrepro import chapters, comparison, tune
 from dexrepro.cache_key import content_of
 from dexrepro.checks import value_at
 from dexrepro.errors import InputError
@@ -143,14 +143,14 @@ class Joint(Mine):
 def test_laws_of_a_folder_stand_beside_the_books_where_their_kind_fits(tmp_path, monkeypatch):
     (tmp_path / "laws_of_a_folder.py").write_text(LAW)
     monkeypatch.syspath_prepend(tmp_path)
-    laws = tune.laws_in(tmp_path)
+    laws = comparison.laws_in(tmp_path)
     searches = []
 
     def tuned(search):
         searches.append(search)
         return tune.Found(2.0, 1.0 if search.case == "Mine" else 1.5, {}, 8, 0, [])
 
-    rows = tune.leaderboard(["holding_comparison.s4", "holding_comparison.s8"], laws, ["rmse"], 1, tuned)
+    rows = comparison.leaderboard(["holding_comparison.s4", "holding_comparison.s8"], laws, ["rmse"], 1, tuned)
     assert [(row["law"], row["whose"]) for row in rows] == [
         ("Mine", "yours"), ("s4", "the book's"), ("s8", "the book's"),
     ]  # fmt: skip
@@ -175,7 +175,7 @@ def test_what_is_overridden_holds_for_the_laws_of_both_sides(tmp_path, monkeypat
 
     words = ["holding_comparison.step=0.002", "force_tracking.step=0.004"]
     cases = ["holding_comparison.s4", "force_tracking.c1_force"]
-    tune.leaderboard(cases, tune.laws_in(tmp_path), ["rmse"], 1, tuned, words)
+    comparison.leaderboard(cases, comparison.laws_in(tmp_path), ["rmse"], 1, tuned, words)
     steps = {(search.experiment, search.case): search.values["step"] for search in searches}
     assert steps == {
         ("holding_comparison", "s4"): 0.002, ("holding_comparison", "Mine"): 0.002,
@@ -199,13 +199,13 @@ def test_a_plain_law_alone_in_its_file_is_found_and_of_several_one_must_say_whic
     several.write_text(PLAIN.format(name="Low") + PLAIN.format(name="High"))
     monkeypatch.setattr(sys, "path", [*sys.path])
     told = []
-    assert list(tune.laws_in(tmp_path, told.append)) == ["plain_alone.Mine"]
+    assert list(comparison.laws_in(tmp_path, told.append)) == ["plain_alone.Mine"]
     assert told == [f"{several}: High, Low could be plain holding laws or helpers; declare kind = 'holding' in a law"]
-    laws = tune.laws_in(alone)
+    laws = comparison.laws_in(alone)
     assert list(laws) == ["plain_alone.Mine"], "a file is named as well as a folder"
     with pytest.raises(InputError, match=r"laws = .*several.py is not allowed: no class in it declares kind = 'joint'"):
-        tune.laws_in(several)
-    search = tune.joined(
+        comparison.laws_in(several)
+    search = comparison.joined(
         tune.search_of("holding_comparison.s4", "rmse", 1), "plain_alone.Mine", laws["plain_alone.Mine"]
     )
     assert search.ranges == {"law.gain": (0.1, 1.0)}
@@ -218,7 +218,7 @@ def test_a_law_in_a_file_of_another_modules_name_is_one_sentence(tmp_path, monke
     (tmp_path / "signal.py").write_text(PLAIN.format(name="Mine"))
     monkeypatch.setattr(sys, "path", [*sys.path])
     with pytest.raises(InputError, match=r"'signal' is a module already \(.+\); rename .*signal.py"):
-        tune.laws_in(tmp_path)
+        comparison.laws_in(tmp_path)
 
 
 def test_a_law_of_which_nothing_says_how_it_is_built_is_one_sentence(tmp_path, monkeypatch):
@@ -227,7 +227,7 @@ def test_a_law_of_which_nothing_says_how_it_is_built_is_one_sentence(tmp_path, m
     )
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(InputError, match=r"nothing says what 'gizmo' is; .* ranges = "):
-        tune.leaderboard(["holding_comparison.s4"], tune.laws_in(tmp_path), ["rmse"], 1, lambda _: None)
+        comparison.leaderboard(["holding_comparison.s4"], comparison.laws_in(tmp_path), ["rmse"], 1, lambda _: None)
 
 
 # ----------------------------------------------------------------------------------------- searches that are shipped
@@ -275,8 +275,8 @@ def test_a_new_controller_can_be_compared_as_it_is(
 ) -> None:
     monkeypatch.setattr(sys, "path", [*sys.path])
     new_controller(f"Fresh{kind.title().replace('_', '')}", kind, tmp_path)
-    ((target, law),) = tune.laws_in(tmp_path).items()
-    joined = tune.joined(tune.search_of(case, "rmse", 1), target, law)
+    ((target, law),) = comparison.laws_in(tmp_path).items()
+    joined = comparison.joined(tune.search_of(case, "rmse", 1), target, law)
     assert joined is not None
     assert joined.values["law"].get("dt", 1e-3) == 1e-3
     given = {*joined.values["law"]} - {"_target_", "dt", "desired_force"}

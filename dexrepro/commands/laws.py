@@ -71,7 +71,7 @@ def compare_command(options: argparse.Namespace) -> int:
     """``dexrepro compare laws=FOLDER case=EXPERIMENT.CASE,… minimise=METRIC budget=N [EXPERIMENT.key=value …]``."""
     import pandas as pd
 
-    from dexrepro import tune
+    from dexrepro import comparison, tune
     from dexrepro.selection import quoted
     from dexrepro.storage import digest_of
 
@@ -81,8 +81,8 @@ def compare_command(options: argparse.Namespace) -> int:
     given, other = _given(rest, experiments)
     if other:
         raise InputError(f"'{other[0]}' has no meaning here; see: dexrepro compare --help")
-    rows = tune.leaderboard(
-        names, tune.laws_in(known["laws"], say), known["metric"].split(","), known["sign"],
+    rows = comparison.leaderboard(
+        names, comparison.laws_in(known["laws"], say), known["metric"].split(","), known["sign"],
         lambda search: tune.run(search, known["budget"], results, known["workers"], say)[0],
         [*map(quoted, given)],
     )  # fmt: skip
