@@ -43,6 +43,8 @@ def selected(words: Iterable[str], command: str) -> Selection:
         raise InputError(f"chapter = {chapters.OWN} is not allowed for {command}: scenes of your own have no claims")
     if "claim" in extra and "claim" in values:
         numbers = _with_claim(values["claim"].strip("'\""), numbers)
+    if command != "render":  # which may have the folder of a result
+        check_owner(overrides, numbers)
     only = [*filter(None, listed(values.get("only", "")))]
     if only or "figure" in values:
         figure = values.get("figure", "").strip("'\"") or None
@@ -151,6 +153,13 @@ def _implied_chapters(overrides: Sequence[str], extra_dir: str | None) -> list[s
     if "scene" in named:
         return [chapters.OWN]
     return list(dict.fromkeys(owner[name] for name in named if name in owner))
+
+
+def check_owner(overrides: Iterable[str], numbers: Sequence[str]) -> None:
+    """Refuse to look for a case in the whole book. Raises InputError."""
+    case = next((text.partition("=")[2] for text in overrides if re.match("cases?=", text)), "null")
+    if case != "null" and len(numbers) == len(chapters.numbers()) > 1:
+        raise InputError(f"case = {case}: of which experiment? add only=EXPERIMENT")
 
 
 def of_chapter(number: str, numbers: Sequence[str], overrides: Sequence[str]) -> list[str]:

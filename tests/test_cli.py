@@ -87,7 +87,7 @@ def test_a_command_of_the_manual_works(shell: Shell, command: str, expected: str
         ("dexrepro check chapter=2 --json only=nosuch", 2, "unknown experiment 'nosuch'"),
         ("dexrepro check chapter=2 --jsn only=holding_line", 2, "unrecognized arguments"),
         ("dexrepro diff here there", 2, "here holds no result"),
-        ("dexrepro draw case=s1", 2, "unknown case 's1'"),
+        ("dexrepro draw case=s1", 2, "case = s1: of which experiment"),
     ],
 )
 def test_a_mistake_gets_one_sentence(typed: Typed, command: str, status: int, sentence: str) -> None:

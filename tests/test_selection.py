@@ -77,6 +77,12 @@ def test_hydras_own_grammar_is_left_alone(word: str) -> None:
     assert quoted(word) == word
 
 
+@pytest.mark.parametrize("command", ["run", "check", "study", "draw"])
+def test_a_case_is_not_looked_for_in_the_whole_book(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([command, "case=sigma10"]) == 2
+    assert "case = sigma10: of which experiment? add only=EXPERIMENT" in capsys.readouterr().err
+
+
 def test_a_claim_is_run_by_its_cases(toy: Path) -> None:
     assert needs_of(["claim=C90.01", "seed=1"]) == ["seed=1", "only=decay", "case=[fast,plain]"]
     assert needs_of(["claim=C90.01", "case=gain*"]) == ["case=gain*", "only=decay"]

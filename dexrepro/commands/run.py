@@ -120,10 +120,11 @@ def _run(overrides: Sequence[str], extra_dir: str | None) -> Outcome:
     from dexrepro.progress import Bar, Lines, Silent
     from dexrepro.result import Result
     from dexrepro.runner import run_plans
-    from dexrepro.selection import chapters_of, of_chapter, positive_workers
+    from dexrepro.selection import chapters_of, check_owner, of_chapter, positive_workers
     from dexrepro.unread import without_effect
 
     numbers, rest = chapters_of(overrides, extra_dir)
+    check_owner(rest, numbers)
     plans: list[Plan] = []
     skipped: dict[str, str] = {}
     settings: dict[str, Any] = {}
