@@ -15,7 +15,7 @@ from dexrepro import chapters
 from dexrepro.cache_key import presentation
 from dexrepro.checks import leaves, returned, returned_numbers
 from dexrepro.errors import InputError, nearest
-from dexrepro.experiment import Config, Experiment, Metrics, Recording
+from dexrepro.experiment import AllMetrics, Config, Experiment, Metrics, Recording
 from dexrepro.plan import PARTIAL
 from dexrepro.storage import copy, finite, read_json, read_yaml, whole_folder, write_json
 
@@ -69,10 +69,10 @@ class RunEntry:
     cases: dict[str, CaseEntry]
 
 
-def summarise(experiment: Experiment, nested: dict[str, Metrics], config: Config) -> None:
-    """Add the numbers over several cases to nested metrics."""
-    if function := experiment.function("summarise"):
-        nested[SUMMARY] = finite(returned_numbers(function(nested, config), "experiment.py: summarise"))
+def over_cases(experiment: Experiment, metrics: AllMetrics, config: Config) -> Metrics:
+    """The numbers over several cases, of which an experiment may have none."""
+    function = experiment.function("summarise")
+    return finite(returned_numbers(function(metrics, config), "experiment.py: summarise")) if function else {}
 
 
 @contextlib.contextmanager
@@ -110,7 +110,7 @@ def recorded(experiment: Experiment, folder: Path) -> tuple[dict[str, Recording]
     incomplete = some_cases or (bool(run["differs"]) and len(shown) < len(recordings))
     if not some_cases:  # a number over the cases is one over all of them
         with _lenient(incomplete):
-            summarise(experiment, nested, config)
+            nested[SUMMARY] = over_cases(experiment, nested, config)
     return shown, nested, config, incomplete
 
 

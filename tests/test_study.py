@@ -17,7 +17,7 @@ import pytest
 from conftest import ROOT
 
 from dexrepro import chapters, cli
-from dexrepro.claims import LOOKS, Claim, less, robustness
+from dexrepro.claims import LOOKS, Claim, less, robustness, within
 from dexrepro.config import baseline_dir
 from dexrepro.errors import InputError
 from dexrepro.pool import Pool
@@ -198,6 +198,25 @@ def test_what_is_decided_is_drawn_no_more(folder: Path, monkeypatch: pytest.Monk
     assert read_json(sampling.run("90", "decay", 28, RESULTS))["claims"]["C90.03"]["samples"] == 28, "the rest is added"
     entries = [entry for entry in sampling.kept_samples("90", "decay", RESULTS).values() if len(entry["cases"]) == 4]
     assert len(entries) == 28
+
+
+def test_a_number_over_several_cases_needs_those_that_it_is_made_of(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    chapter = chapters.load("90")
+    over = Claim("C90.09", "90.10", "the fast one decays more", within("decay.ratio", 1, 1e6))
+    monkeypatch.setattr(chapters, "load", lambda _: replace(chapter, claims=(over,)))
+    monkeypatch.setattr(sampling, "Pool", lambda workers: Pool(here=True))
+    path = sampling.run("90", "decay", None, RESULTS)
+    row = read_json(path)["claims"]["C90.09"]
+    assert (row["word"], row["holds"], row["samples"]) == ("robust", 26, 26)
+    cases = [set(entry["cases"]) for entry in samples.read_samples(samples.samples_file(path))]
+    assert cases == [{"plain", "fast", "halved", "gain1", "gain2"}] * 16 + [{"plain", "fast"}] * 10
+    asked = samples._Asked({"plain": {}}, ["plain", "fast"])
+    assert "fast" not in asked
+    assert asked.cases == {"fast"}
+    assert [*asked.items()] == [("plain", {})]
+    assert asked.cases == {"plain", "fast"}, "who goes through all asks for all"
 
 
 def test_no_parameter_is_named_by_luck() -> None:

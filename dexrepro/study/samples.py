@@ -6,7 +6,7 @@ import gzip
 import json
 import time
 import zlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from dexrepro.errors import InputError
 from dexrepro.experiment import Config, Metrics
 from dexrepro.physics.engine import REFERENCE
 from dexrepro.plan import case_values
-from dexrepro.result import flat, summarise
+from dexrepro.result import SUMMARY, flat, over_cases
 from dexrepro.storage import digest_of, finite, opened, write_text
 from dexrepro.study.draws import draw
 
@@ -67,25 +67,71 @@ def contents(chapter: str, experiment: str, entry: Mapping[str, Any], only: Case
     return {case: content_of(definition, config) for case, config in configs.items()}
 
 
+class _Asked(Mapping[str, Metrics]):
+    """Metrics by case, of which ``cases`` are those that were asked for; all, where they were gone through."""
+
+    def __init__(self, metrics: Mapping[str, Metrics], names: Iterable[str]) -> None:
+        self.metrics, self.names, self.cases = metrics, {*names}, set[str]()
+
+    def __getitem__(self, case: str) -> Metrics:
+        self.cases.add(case)
+        return self.metrics[case]
+
+    def __iter__(self) -> Iterator[str]:
+        self.cases |= self.names
+        return iter(self.metrics)
+
+    def __len__(self) -> int:
+        self.cases |= self.names
+        return len(self.metrics)
+
+
 def metrics_of(chapter: str, experiment: str, entry: Mapping[str, Any]) -> Metrics:
-    """All metrics of a sample by their full names, with those over several cases; a case that failed has none."""
-    nested: dict[str, Metrics] = {
-        case: dict(row["metrics"]) for case, row in entry["cases"].items() if "metrics" in row
-    }
-    definition = chapters.load(chapter).experiment(experiment)
-    if definition.function("summarise") and len(nested) == len(entry["cases"]):
-        block = draw(chapter, experiment, entry["index"])[1]
-        if len(nested) == len(block["cases"]):
-            summarise(definition, nested, Config.of(block))
-    return finite(flat(experiment, nested))
+    """All metrics of a sample by their full names, with those over several cases if it has the cases they are made of;
+    a case that failed has none."""
+    nested = _by_case(entry)
+    found, cases = _over_several(chapter, experiment, entry, nested)
+    return finite(flat(experiment, nested | ({SUMMARY: found} if cases <= nested.keys() else {})))
+
+
+def cases_over(chapter: str, experiment: str, entries: Iterable[Mapping[str, Any]]) -> set[str] | None:
+    """The cases that numbers over several are made of, as a sample of all cases tells; None without one."""
+    names = draw(chapter, experiment, 0)[1]["cases"].keys()
+    whole = next((entry for entry in entries if _by_case(entry).keys() >= names), None)
+    return _over_several(chapter, experiment, whole, _by_case(whole))[1] if whole else None
+
+
+def _by_case(entry: Mapping[str, Any]) -> dict[str, Metrics]:
+    return {case: dict(row["metrics"]) for case, row in entry["cases"].items() if "metrics" in row}
+
+
+def _over_several(
+    chapter: str, experiment: str, entry: Mapping[str, Any], nested: Mapping[str, Metrics]
+) -> tuple[Metrics, set[str]]:
+    """A sample's numbers over several cases, and the cases that they are made of: they count where these are there."""
+    block = draw(chapter, experiment, entry["index"])[1]
+    asked, found = _Asked(nested, block["cases"]), Metrics()
+    try:
+        found = over_cases(chapters.load(chapter).experiment(experiment), asked, Config.of(block))
+    except Exception:
+        if asked.cases <= nested.keys():
+            raise
+    return found, asked.cases
 
 
 def _rounded(numbers: Mapping[str, float | None]) -> dict[str, float | None]:
     return {key: value if value is None else float(f"{value:.6g}") for key, value in numbers.items()}
 
 
-def needed_cases(claims: Iterable[Claim], cases: Iterable[str], only: Cases = (), deciding: bool = False) -> list[str]:
-    """The cases that the claims are about, all as soon as a claim needs a number over several; of them only some.
+def needed_cases(
+    claims: Iterable[Claim],
+    cases: Iterable[str],
+    only: Cases = (),
+    deciding: bool = False,
+    over: Container[str] | None = None,
+) -> list[str]:
+    """The cases that the claims are about, and ``over`` (None: all) if one needs a number over several; of them only
+    some.
 
     deciding: those of the predicates alone, on which a claim's word rests, without controls and other readings.
     """
@@ -93,7 +139,7 @@ def needed_cases(claims: Iterable[Claim], cases: Iterable[str], only: Cases = ()
         return [case for case in cases if case in only]
     tests = (test for claim in claims for test in ((claim.predicate,) if deciding else claim.predicates) if test)
     about, over_several = cases_in(name for test in tests for name in test.metrics)
-    return [case for case in cases if over_several or case in about]
+    return [case for case in cases if case in about or (over_several and (over is None or case in over))]
 
 
 def studies_folder(results: Path, shipped: bool = False) -> Path:

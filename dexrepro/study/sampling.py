@@ -88,7 +88,8 @@ def run(
     with Pool(workers) as pool:
         for look in (0, *([count] if count is not None else LOOKS)):  # first at what there is
             deciding = count is None and look > LOOKS[0]
-            needed = samples.needed_cases(undecided, names, deciding=deciding)
+            over = samples.cases_over(chapter, experiment, kept.values()) if deciding else None
+            needed = samples.needed_cases(undecided, names, deciding=deciding, over=over)
             wanted = tuple(case for case in needed if not only or case in only)
             lacking = [i for i in range(look) if i not in kept or not {*wanted} <= kept[i]["cases"].keys()]
             if not lacking and (look or not kept):
@@ -165,8 +166,8 @@ def kept_samples(
 ) -> dict[int, dict[str, Any]]:
     """What the samples there are, shipped or made here, hold of the present simulations, in the order of index.
 
-    A sample counts where it has all cases that decide a claim. One of another engine counts as long as the cross-check
-    shows that it decides every claim alike.
+    A sample counts where it has all cases that decide a claim, that of a ``number`` whatever it has. One of another
+    engine counts as long as the cross-check shows that it decides every claim alike.
     """
     found: dict[int, dict[str, Any]] = {}
     for entry in samples.all_samples(experiment, results):
@@ -180,8 +181,11 @@ def kept_samples(
             rows = {**before["cases"], **rows}
         if len(rows) >= len(before["cases"]):
             found[index] = {**entry, "values": draw(chapter, experiment, index)[0], "cases": rows}
+    if number is not None:
+        return found
     names = list(draw(chapter, experiment, 0)[1]["cases"])
     claims = chapters.load(chapter).claims_of(experiment)
-    about = [{*samples.needed_cases([claim], names, deciding=True)} for claim in claims if claim.predicate]
+    over = samples.cases_over(chapter, experiment, found.values())
+    about = [{*samples.needed_cases([claim], names, deciding=True, over=over)} for claim in claims if claim.predicate]
     useful = (index for index, entry in found.items() if any(cases <= entry["cases"].keys() for cases in about))
     return {index: found[index] for index in sorted(useful)}
