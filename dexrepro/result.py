@@ -110,7 +110,8 @@ def recorded(experiment: Experiment, folder: Path) -> tuple[dict[str, Recording]
     incomplete = some_cases or (bool(run["differs"]) and len(shown) < len(recordings))
     if not some_cases:  # a number over the cases is one over all of them
         with _lenient(incomplete):
-            nested[SUMMARY] = over_cases(experiment, nested, config)
+            if found := over_cases(experiment, nested, config):
+                nested[SUMMARY] = found
     return shown, nested, config, incomplete
 
 

@@ -35,7 +35,7 @@ def test_a_command_takes_what_its_help_says_and_nothing_else(command: str) -> No
     for key in {name for name in KEYS if "." not in name}:
         word = f"{key}={example.get(key, 'x')}"
         if key in TAKEN[command]:
-            selected([word], command)
+            selected([word, *(["only=holding_line"] if key == "case" else [])], command)
         else:
             with pytest.raises(InputError, match=rf"'{word}' has no meaning here; there are: .*{TAKEN[command][0]}="):
                 selected([word], command)
