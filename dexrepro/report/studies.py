@@ -28,7 +28,7 @@ def finding(study: Mapping[str, Any]) -> str:
     """The study in one sentence."""
     words = [verdicts.robustness(row) for row in study["claims"].values()]
     counts = [f"{words.count(word)} {word}" for word in (ROBUST, FRAGILE, OPEN) if word in words]
-    return f"Of {len(words)} claims over {study['samples']} samples: {', '.join(counts)}"
+    return f"Of {len(words)} claim{'s' * (len(words) != 1)} over {study['samples']} samples: {', '.join(counts)}"
 
 
 def draw(study: Mapping[str, Any]) -> Any:
