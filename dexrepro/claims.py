@@ -323,6 +323,8 @@ SHARE = 0.85
 LOOKS = (16, 20, 26, 32, 39, 50, 60, 70, 79, 89, 100)
 """Numbers of draws after which a study looks at its claims: from enough to tell what decides a fragile one, and where
 one failure more may leave it robust (26 without any, 39, 50, ...)."""
+SEEN = 8
+"""Draws in which a study runs the cases of controls and other readings, too, which decide no word."""
 CHANCES = {ROBUST: 1 / 64, FRAGILE: 1 / 100}
 """Of a wrong word at any one number of draws; over all numbers up to 100 together less than 0.05 for each word."""
 

@@ -191,9 +191,10 @@ def test_what_is_decided_is_drawn_no_more(folder: Path, monkeypatch: pytest.Monk
     path = sampling.run("90", "decay", None, RESULTS)
     rows = {key: (row["word"], row["samples"]) for key, row in read_json(path)["claims"].items()}
     assert rows == {"C90.01": ("robust", 26), "C90.02": ("fragile", 16)}
-    assert read_json(path)["claims"]["C90.01"]["control_samples"] == 16, "it has been seen, and decides nothing"
+    assert read_json(path)["claims"]["C90.01"]["control_samples"] == 8, "it has been seen, and decides nothing"
     cases = [set(entry["cases"]) for entry in samples.read_samples(samples.samples_file(path))]
-    assert cases == [{"plain", "fast", "gain1", "gain2"}] * 16 + [{"plain", "fast"}] * 10
+    deciding = {"plain", "fast"}
+    assert cases == [deciding | {"gain1", "gain2"}] * 8 + [deciding | {"gain2"}] * 8 + [deciding] * 10
     monkeypatch.setattr(chapters, "load", lambda _: chapter)
     assert read_json(sampling.run("90", "decay", 28, RESULTS))["claims"]["C90.03"]["samples"] == 28, "the rest is added"
     entries = [entry for entry in sampling.kept_samples("90", "decay", RESULTS).values() if len(entry["cases"]) == 4]
@@ -211,7 +212,7 @@ def test_a_number_over_several_cases_needs_those_that_it_is_made_of(
     row = read_json(path)["claims"]["C90.09"]
     assert (row["word"], row["holds"], row["samples"]) == ("robust", 26, 26)
     cases = [set(entry["cases"]) for entry in samples.read_samples(samples.samples_file(path))]
-    assert cases == [{"plain", "fast", "halved", "gain1", "gain2"}] * 16 + [{"plain", "fast"}] * 10
+    assert cases == [{"plain", "fast", "halved", "gain1", "gain2"}] * 8 + [{"plain", "fast"}] * 18
     asked = samples._Asked({"plain": {}}, ["plain", "fast"])
     assert "fast" not in asked
     assert asked.cases == {"fast"}

@@ -9,7 +9,7 @@ from typing import Any
 
 from dexrepro import chapters, crosscheck
 from dexrepro.cache_key import uses_engine
-from dexrepro.claims import LOOKS, OPEN, cases_in
+from dexrepro.claims import LOOKS, OPEN, SEEN, cases_in
 from dexrepro.errors import InputError, nearest
 from dexrepro.physics.engine import REFERENCE
 from dexrepro.plan import matching
@@ -68,7 +68,7 @@ def run(
 ) -> Path:
     """Evaluate what is missing of ``count`` samples, store all there are with their summary; returns its path.
 
-    count: None takes as many as decide every claim, 100 at most; after the first look, where controls have been seen,
+    count: None takes as many as decide every claim, 16 at least and 100 at most; once controls have been ``SEEN``,
     those cases alone that decide. ``update`` renews the study that is shipped. engine: of the samples made now. only:
     run these cases alone, for the claims about no other, with a summary of their own.
     Raises InputError where a summary of more samples, of another configuration, would be replaced, or where the engine
@@ -86,8 +86,8 @@ def run(
     names, failed = list(draw(chapter, experiment, 0)[1]["cases"]), []
     kept = kept_samples(chapter, experiment, results, only=only)
     with Pool(workers) as pool:
-        for look in (0, *([count] if count is not None else LOOKS)):  # first at what there is
-            deciding = count is None and look > LOOKS[0]
+        for look in (0, *([count] if count is not None else (SEEN, *LOOKS))):  # first at what there is
+            deciding = count is None and look > SEEN
             over = samples.cases_over(chapter, experiment, kept.values()) if deciding else None
             needed = samples.needed_cases(undecided, names, deciding=deciding, over=over)
             wanted = tuple(case for case in needed if not only or case in only)
@@ -100,7 +100,7 @@ def run(
             with locked(samples.studies_folder(results)):  # who ends last sees every sample
                 kept = kept_samples(chapter, experiment, results, only=only) if lacking else kept
                 words = _store(chapter, experiment, list(kept.values()), target)
-            if count is None:  # what has no number to judge by, after draws of it, has none after more
+            if count is None and look != SEEN:  # what has no number to judge by, after draws of it, has none after more
                 undecided = [c for c in claims if words.get(c.id, OPEN if look == 0 else "") == OPEN]
             if failed or not undecided or time.time() > deadline:
                 break

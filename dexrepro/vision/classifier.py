@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,13 @@ from dexrepro.vision.patches import CHANNELS, SAMPLES
 
 Single = NDArray[np.float32]
 """Single precision."""
+Labels = NDArray[np.int64]
+"""The number of a class, one a patch."""
 
 INPUT = 28  # side that the 24 x 24 patches are resampled to
 KERNEL = 5
+WINDOW = KERNEL + 1  # what the four results see of which the largest is kept
+PARTS = tuple((slice(row, row + KERNEL), slice(column, column + KERNEL)) for row in (0, 1) for column in (0, 1))
 CLASSES = 3
 SHAPES = ((16, len(CHANNELS), KERNEL, KERNEL), (32, 16, KERNEL, KERNEL), (128, 32 * 4 * 4), (CLASSES, 128))
 
@@ -38,50 +42,49 @@ class GraspClassifier:
         self.deviation: Single = np.ones_like(self.mean)
 
     def fit(
-        self,
-        patches: Single,
-        labels: NDArray[np.int64],
-        epochs: int,
-        watch: Callable[[int, float], None] | None = None,
-    ) -> None:
+        self, patches: Single, labels: Labels, epochs: int, test: tuple[Single, Labels] | None = None
+    ) -> list[tuple[float, float]]:
         """Train on patches (n, 7, 24, 24) and labels (n,).
 
-        After every epoch ``watch`` gets its number and the share found right while it was trained on.
+        Of every epoch the share found right while it was trained on, and of ``test``, others with their labels, after
+        it (nan without).
         """
         self.mean = patches.mean(axis=(0, 2, 3), keepdims=True)
         self.deviation = patches.std(axis=(0, 2, 3), keepdims=True) + np.float32(1e-6)
-        inputs, adam = self._prepared(patches), Adam(self.weights, self.rate)
-        for epoch in range(epochs):
+        inputs, adam, shares = self._prepared(patches), Adam(self.weights, self.rate), []
+        new, new_labels = (self._prepared(test[0]), test[1]) if test else (None, labels)
+        for _ in range(epochs):
             right = 0
             for part in _batches(self._order, len(inputs), self.batch):
                 scores, gradient = self.gradient(inputs[part], labels[part])
                 adam.step(self.weights, gradient)
                 right += int((scores.argmax(1) == labels[part]).sum())
-            if watch is not None:
-                watch(epoch + 1, right / len(inputs))
+            found = np.nan if new is None else float((self._probable(new).argmax(1) == new_labels).mean())
+            shares.append((right / len(inputs), found))
+        return shares
 
     def probabilities(self, patches: Single) -> Array:
         """Probability of each class, shape (n, 3)."""
-        inputs = self._prepared(patches)
+        return self._probable(self._prepared(patches))
+
+    def _probable(self, inputs: Single) -> Array:
         parts = [_softmax(self._scores(inputs[k : k + 128])[0]) for k in range(0, len(inputs), 128)]
         return np.concatenate([np.zeros((0, CLASSES)), *parts])
 
-    def gradient(self, inputs: Single, labels: NDArray[np.int64]) -> tuple[Single, list[Single]]:
+    def gradient(self, inputs: Single, labels: Labels) -> tuple[Single, list[Single]]:
         """Scores (n, 3) of prepared inputs, and the gradient of their mean cross-entropy by each of the weights."""
         first, _, second, _, third, _, fourth, _ = self.weights
-        scores, (columns1, conv1, columns2, conv2, flat, hidden) = self._scores(inputs)
+        scores, (windows1, fours1, pooled1, windows2, fours2, pooled2, flat, hidden) = self._scores(inputs)
         by_scores = _softmax(scores)
         by_scores[np.arange(len(labels)), labels] -= 1
         by_scores /= np.float32(len(labels))
         by_hidden: Single = (by_scores @ fourth) * (hidden > 0)
         by_flat: Single = (by_hidden @ third).reshape(-1, 32, 4, 4).transpose(0, 2, 3, 1)
-        by_conv2 = _unpooled(by_flat, conv2)
-        by_pooled = _spread(by_conv2, second)
-        by_conv1 = _unpooled(by_pooled, conv1)
-        rows1, rows2 = by_conv1.reshape(-1, 16), by_conv2.reshape(-1, 32)
+        by_fours2 = _unpooled(by_flat, pooled2, fours2)
+        by_fours1 = _unpooled(_spread(by_fours2, second, pooled1.shape), pooled1, fours1)
         return scores, [
-            _by_channel(rows1.T @ columns1, first.shape), rows1.sum(0),
-            _by_channel(rows2.T @ columns2, second.shape), rows2.sum(0),
+            _by_weight(windows1.T @ by_fours1, first.shape), by_fours1.sum(0).reshape(4, -1).sum(0),
+            _by_weight(windows2.T @ by_fours2, second.shape), by_fours2.sum(0).reshape(4, -1).sum(0),
             by_hidden.T @ flat, by_hidden.sum(0),
             by_scores.T @ hidden, by_scores.sum(0),
         ]  # fmt: skip
@@ -89,11 +92,11 @@ class GraspClassifier:
     def _scores(self, inputs: Single) -> tuple[Single, tuple[Single, ...]]:
         """Scores (n, 3) before the softmax, and what the gradient needs of the layers below."""
         first, offset1, second, offset2, third, offset3, fourth, offset4 = self.weights
-        conv1, columns1 = _convolved(inputs, first, offset1)
-        conv2, columns2 = _convolved(_pooled(conv1), second, offset2)
-        flat = _pooled(conv2).transpose(0, 3, 1, 2).reshape(len(inputs), -1)
+        windows1, fours1, pooled1 = _convolved(inputs, first, offset1)
+        windows2, fours2, pooled2 = _convolved(pooled1, second, offset2)
+        flat = pooled2.transpose(0, 3, 1, 2).reshape(len(inputs), -1)
         hidden = np.maximum(flat @ third.T + offset3, 0)
-        return hidden @ fourth.T + offset4, (columns1, conv1, columns2, conv2, flat, hidden)
+        return hidden @ fourth.T + offset4, (windows1, fours1, pooled1, windows2, fours2, pooled2, flat, hidden)
 
     def _prepared(self, patches: Single) -> Single:
         """Standardised and resampled inputs (n, 28, 28, 7)."""
@@ -120,52 +123,54 @@ class Adam:
             weight -= rate * first / (np.sqrt(second) / scale + 1e-8)
 
 
-def _convolved(inputs: Single, weight: Single, offset: Single) -> tuple[Single, Single]:
-    """Rectified convolution (n, h - 4, w - 4, out) of inputs (n, h, w, in), and the windows it took, one a row.
+def _convolved(inputs: Single, weight: Single, offset: Single) -> tuple[Single, Single, Single]:
+    """Convolution of inputs (n, h, w, in) of which the largest of each 2 x 2 is kept, or zero where it is negative.
 
-    In a row the channels of one pixel are neighbours, as in the inputs: whole lines of a window are copied at once.
+    First the windows of 6 x 6 that the four results share, one a row, then those four, (rows, 4 x out), then what is
+    kept, (n, h / 2 - 2, w / 2 - 2, out). In a row the channels of one pixel are neighbours, as in the inputs: whole
+    lines of a window are copied at once.
     """
-    windows = np.lib.stride_tricks.sliding_window_view(inputs, (KERNEL, KERNEL), axis=(1, 2))
-    columns = windows.transpose(0, 1, 2, 4, 5, 3).reshape(-1, weight[0].size)
-    result = columns @ _by_pixel(weight).T
-    result += offset
-    return np.maximum(result, 0, out=result).reshape(*windows.shape[:3], -1), columns
+    windows = np.lib.stride_tricks.sliding_window_view(inputs, (WINDOW, WINDOW), axis=(1, 2))[:, ::2, ::2]
+    columns = windows.transpose(0, 1, 2, 4, 5, 3).reshape(-1, WINDOW**2 * inputs.shape[3])
+    fours = columns @ _of_fours(weight)
+    fours += np.tile(offset, 4)
+    one, two, three, four = np.split(fours, 4, axis=1)
+    pooled = np.maximum(np.maximum(one, two), np.maximum(three, four))
+    return columns, fours, np.maximum(pooled, 0, out=pooled).reshape(*windows.shape[:3], -1)
 
 
-def _by_pixel(weight: Single) -> Single:
-    """Weights (out, in, 5, 5) as (out, 5 x 5 x in), in the order of the windows."""
-    return weight.transpose(0, 2, 3, 1).reshape(len(weight), -1)
+def _unpooled(by_pooled: Single, pooled: Single, fours: Single) -> Single:
+    """Gradient by the four results of each window: only the largest, where positive, has one."""
+    positive = (by_pooled * (pooled > 0)).reshape(len(fours), 1, -1)
+    largest = fours.reshape(len(fours), 4, -1) == pooled.reshape(positive.shape)
+    return (positive * largest).reshape(fours.shape)
 
 
-def _by_channel(gradient: Single, shape: tuple[int, ...]) -> Single:
-    """The inverse: (out, 5 x 5 x in) as weights of a shape (out, in, 5, 5)."""
-    return gradient.reshape(shape[0], KERNEL, KERNEL, shape[1]).transpose(0, 3, 1, 2)
+def _of_fours(weight: Single) -> Single:
+    """Weights (out, in, 5, 5) as (6 x 6 x in, 4 x out): each of the four results sees its own part of the window."""
+    result = np.zeros((WINDOW, WINDOW, weight.shape[1], 4, len(weight)), weight.dtype)
+    for k, (rows, columns) in enumerate(PARTS):
+        result[rows, columns, :, k] = weight.transpose(2, 3, 1, 0)
+    return result.reshape(-1, 4 * len(weight))
 
 
-def _spread(by_result: Single, weight: Single) -> Single:
-    """Gradient by the inputs of a convolution from that by its result."""
-    count, height, width, _ = by_result.shape
-    rows = by_result.reshape(-1, len(weight)) @ _by_pixel(weight)
-    windows = rows.reshape(count, height, width, KERNEL, KERNEL, -1)
-    result = np.zeros((count, height + KERNEL - 1, width + KERNEL - 1, windows.shape[-1]), np.float32)
-    for i in range(KERNEL):
-        for j in range(KERNEL):
-            result[:, i : i + height, j : j + width] += windows[:, :, :, i, j]
-    return result
+def _by_weight(gradient: Single, shape: tuple[int, ...]) -> Single:
+    """Gradient by the weights, of a shape (out, in, 5, 5), from that by those of :func:`_of_fours`."""
+    fours = gradient.reshape(WINDOW, WINDOW, shape[1], 4, shape[0])
+    by_pixel: Single = sum(fours[rows, columns, :, k] for k, (rows, columns) in enumerate(PARTS))
+    return by_pixel.transpose(3, 2, 0, 1)
 
 
-def _pooled(inputs: Single) -> Single:
-    """Largest of each 2 x 2: (n, h, w, c) becomes (n, h / 2, w / 2, c)."""
-    return np.maximum(
-        np.maximum(inputs[:, ::2, ::2], inputs[:, 1::2, ::2]), np.maximum(inputs[:, ::2, 1::2], inputs[:, 1::2, 1::2])
-    )
-
-
-def _unpooled(by_pooled: Single, inputs: Single) -> Single:
-    """Gradient by what was rectified to ``inputs`` and pooled: only the largest, where positive, has one."""
-    largest = np.repeat(np.repeat(_pooled(inputs), 2, axis=1), 2, axis=2)
-    spread = np.repeat(np.repeat(by_pooled, 2, axis=1), 2, axis=2)
-    return spread * ((inputs == largest) & (inputs > 0))
+def _spread(by_fours: Single, weight: Single, shape: tuple[int, ...]) -> Single:
+    """Gradient by the inputs, of a shape (n, h, w, in), of a convolution from that by its fours."""
+    count, height, width, channels = shape
+    rows, columns, half = height // 2 - 2, width // 2 - 2, WINDOW // 2
+    windows = (by_fours @ _of_fours(weight).T).reshape(count, rows, columns, half, 2, half, 2, channels)
+    result = np.zeros((count, height // 2, 2, width // 2, 2, channels), windows.dtype)
+    for i in range(half):
+        for j in range(half):
+            result[:, i : i + rows, :, j : j + columns] += windows[:, :, :, i, :, j].swapaxes(2, 3)
+    return result.reshape(shape)
 
 
 def _softmax(scores: Single) -> Single:
@@ -198,7 +203,7 @@ def _batches(order: np.random.RandomState, count: int, size: int) -> Iterator[ND
     yield from np.split(shuffled, range(size, count, size))
 
 
-def confusion(labels: NDArray[np.int64], found: NDArray[np.int64]) -> NDArray[np.int64]:
+def confusion(labels: Labels, found: Labels) -> NDArray[np.int64]:
     """Counts (3, 3): rows the true class, columns the found one."""
     result = np.zeros((CLASSES, CLASSES), dtype=np.int64)
     np.add.at(result, (labels, found), 1)

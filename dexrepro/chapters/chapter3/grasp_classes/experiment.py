@@ -18,16 +18,12 @@ NAMES = ("safe", "unsafe", "bad")
 def simulate(config: Config, rng: Rng) -> Recording:
     patches, labels, new_patches, new_labels = _data(config, rng)
     classifier = GraspClassifier(config.network_seed, config.learning_rate, config.batch)
-    rows = []
-
-    def watch(epoch: int, train: float) -> None:
-        test = (classifier.probabilities(new_patches).argmax(1) == new_labels).mean()
-        rows.append({"epoch": epoch, "train": train, "test": test})
-
     # The perturbation is a share of the inputs' range, which is about 1 in every channel.
-    classifier.fit(patches + np.float32(config.perturbation), labels, config.epochs, watch)
+    moved = patches + np.float32(config.perturbation)
+    shares = classifier.fit(moved, labels, config.epochs, (new_patches, new_labels))
     recording = Recording(steps=len(patches) * config.epochs)
-    recording.frames["epochs"] = pd.DataFrame(rows)
+    recording.frames["epochs"] = pd.DataFrame(shares, columns=["train", "test"])
+    recording.frames["epochs"].insert(0, "epoch", range(1, config.epochs + 1))
     counts = confusion(new_labels, classifier.probabilities(new_patches).argmax(1))
     recording.frames["confusion"] = pd.DataFrame(counts, columns=list(NAMES))
     if config.dataset == "synthetic":
