@@ -157,7 +157,7 @@ def _of_fours(weight: Single) -> Single:
 def _by_weight(gradient: Single, shape: tuple[int, ...]) -> Single:
     """Gradient by the weights, of a shape (out, in, 5, 5), from that by those of :func:`_of_fours`."""
     fours = gradient.reshape(WINDOW, WINDOW, shape[1], 4, shape[0])
-    by_pixel: Single = sum(fours[rows, columns, :, k] for k, (rows, columns) in enumerate(PARTS))
+    by_pixel: Single = sum(fours[rows, columns, :, k] for k, (rows, columns) in enumerate(PARTS))  # type: ignore[assignment]
     return by_pixel.transpose(3, 2, 0, 1)
 
 
