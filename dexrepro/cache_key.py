@@ -59,8 +59,9 @@ def own_digest(values: Mapping[str, Any]) -> str:
     """
     paths = own_modules(values)
     for key, text in leaves(values):
-        named = "." in str(text) or {*FILES} & {*key.split(".")}
-        if isinstance(text, str) and named and key.rpartition(".")[2] != "_target_":
+        if not isinstance(text, str) or key.rpartition(".")[2] == "_target_":
+            continue
+        if "." in text or {*FILES} & {*key.split(".")}:
             name = os.path.expanduser(text)
             paths.update(path for found in (name, *glob.glob(name)) if (path := Path(found)).is_file())
     if any(text.startswith("__main__.") for text in targets(values)):

@@ -104,10 +104,10 @@ _PLAIN = re.compile(r"\$\{([A-Za-z_][\w.]*)\}")
 
 
 def _looked_up(node: Any, names: Mapping[str, Any], within: tuple[str, ...]) -> Any:
-    if isinstance(node, Mapping):
-        return {key: _looked_up(value, names, within) for key, value in node.items()}
     if isinstance(node, list):
         return [_looked_up(value, names, within) for value in node]
+    if not isinstance(node, str | int | float) and isinstance(node, Mapping):
+        return {key: _looked_up(value, names, within) for key, value in node.items()}
     if not isinstance(node, str) or "${" not in node:
         return node
     match = _PLAIN.fullmatch(node)

@@ -11,7 +11,7 @@ from dexrepro.baselines import Baseline, agrees
 from dexrepro.physics.engine import REFERENCE
 from dexrepro.storage import locked
 from dexrepro.study import samples
-from dexrepro.study.draws import draw
+from dexrepro.study.draws import drawn
 
 
 def confirm(chapter: str, experiment: str, results: Path, update: bool = False) -> tuple[int, list[str]]:
@@ -26,7 +26,7 @@ def confirm(chapter: str, experiment: str, results: Path, update: bool = False) 
     entries = {entry["index"]: entry for entry in kept}
     old: dict[str, list[int]] = {}
     for index, entry in entries.items():
-        if entry["values"] == draw(chapter, experiment, index)[0]:
+        if entry["values"] == drawn(chapter, experiment, index):
             for case, content in samples.contents(chapter, experiment, entry).items():
                 if entry["cases"].get(case, {"content": content})["content"] != content:
                     old.setdefault(case, []).append(index)

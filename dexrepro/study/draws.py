@@ -68,6 +68,17 @@ def _points(experiment: str, dimensions: int) -> Array:
 
 def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float | str], dict[str, Any]]:
     """Sample number ``index``: the values drawn, and under them the experiment's block with all its ``cases``."""
+    values, composed = _drawn(chapter, experiment, index)
+    return values, {**resolved_block(composed, experiment), "cases": experiment_cases(composed, experiment)}
+
+
+def drawn(chapter: str, experiment: str, index: int) -> dict[str, float | str]:
+    """The values drawn for sample number ``index`` alone."""
+    return _drawn(chapter, experiment, index)[0]
+
+
+def _drawn(chapter: str, experiment: str, index: int) -> tuple[dict[str, float | str], dict[str, Any]]:
+    """The values drawn, and the chapter's configuration under them."""
     composed = compose_chapter(chapter)
     varied = ranged(chapter, experiment)
     numbers = {key: origin for key, origin in varied.items() if not origin.drawn}
@@ -85,7 +96,7 @@ def draw(chapter: str, experiment: str, index: int) -> tuple[dict[str, float | s
         values[key] = origin.words[int(share * len(origin.words))]
         set_value(composed, key, values[key])
     values["seed"] = int(point[-1] * (1 << 16))
-    return values, {**resolved_block(composed, experiment), "cases": experiment_cases(composed, experiment)}
+    return values, composed
 
 
 def within(share: float, low: float, high: float, whole: bool = False) -> float:

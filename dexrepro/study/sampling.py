@@ -16,7 +16,7 @@ from dexrepro.plan import matching
 from dexrepro.pool import COMPLETES, Failure, Pool
 from dexrepro.storage import claimed, locked, write_json
 from dexrepro.study import samples
-from dexrepro.study.draws import draw
+from dexrepro.study.draws import draw, drawn
 from dexrepro.study.samples import Cases
 from dexrepro.study.summaries import held, summary
 
@@ -180,7 +180,7 @@ def kept_samples(
         if before["cases"] and before.get("engine") == entry.get("engine"):
             rows = {**before["cases"], **rows}
         if len(rows) >= len(before["cases"]):
-            found[index] = {**entry, "values": draw(chapter, experiment, index)[0], "cases": rows}
+            found[index] = {**entry, "values": drawn(chapter, experiment, index), "cases": rows}
     if number is not None:
         return found
     names = list(draw(chapter, experiment, 0)[1]["cases"])
