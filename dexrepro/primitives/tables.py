@@ -143,15 +143,21 @@ class Table:
     def numbers(self) -> tuple[Array, Array]:
         """The wanted columns (N, d), and the number of each row's line (N,), from 1."""
         rows, data = [self.lines[k] for k in self.body], np.empty((0, 0))
+        place: int | str = self.columns[0] if self.columns else 0
+        clock = {place: _time} if self.dated else {}
         text = "\n".join(rows) if self.separator != "," else ""
         if not (re.search(r"\d,\d", text) and re.search(r"\d\.\d", text)):
             rows = text.replace(",", ".").split("\n") if "," in text else rows
             with contextlib.suppress(ValueError):  # what cannot be read so is read row by row
                 data = np.loadtxt(
-                    rows, delimiter=self.separator, usecols=self.columns, comments=None, quotechar='"', ndmin=2
-                )
-        fast = data.shape[1] == len(self.wanted) and np.isfinite(data).all()
-        return (data, np.array(self.body) + 1) if fast else self.numbers_by_row()
+                    rows, delimiter=self.separator, usecols=self.columns, comments=None, quotechar='"', ndmin=2,
+                    converters=clock, encoding=None,
+                )  # fmt: skip
+        if data.shape[1] != len(self.wanted) or not np.isfinite(data).all():
+            return self.numbers_by_row()
+        if clock:
+            data[:, 0] = self._unwrapped(data[:, 0])
+        return data, np.array(self.body) + 1
 
     def numbers_by_row(self) -> tuple[Array, Array]:
         """The same slowly, with a sentence for the first line that cannot be used; empty rows are left out."""
@@ -210,6 +216,15 @@ def _number(entry: str) -> float | None:
         if "_" not in entry and math.isfinite(number := float(entry.replace(",", "."))):  # 10_59_58 is a clock's
             return number
     return None
+
+
+def _time(entry: str) -> float:
+    """A clock's time, or seconds as they are. Raises ValueError."""
+    number = _number(entry)
+    found = _seconds(entry.strip()) if number is None else number
+    if found is None:
+        raise ValueError(entry)
+    return found
 
 
 def _seconds(entry: str) -> float | None:
