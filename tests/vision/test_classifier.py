@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
+from scipy.signal import correlate
 
-from dexrepro.vision.classifier import GraspClassifier, _batches, confusion
+from dexrepro.vision.classifier import Adam, GraspClassifier, _batches, _convolved, _resampling, _softmax, confusion
 
 
 def toy(count, seed):
@@ -39,6 +40,55 @@ def test_channels_are_standardised_on_the_training_set():
     standard = (patches - classifier.mean) / classifier.deviation
     assert standard.mean(axis=(0, 2, 3)) == pytest.approx(0.0, abs=1e-4)
     assert standard.std(axis=(0, 2, 3)) == pytest.approx(1.0, abs=1e-3)
+    flat = classifier.mean + 2 * classifier.deviation * np.ones_like(patches[:1])
+    assert classifier._prepared(flat) == pytest.approx(2 * np.ones((1, 28, 28, 7)), rel=1e-5)
+    classifier.fit(np.ones_like(patches), np.zeros(len(patches), int), epochs=1)
+    assert np.isfinite(classifier.probabilities(patches)).all(), "a channel that never changes"
+
+
+def test_every_epoch_says_how_many_were_told_right():
+    classifier, (patches, labels), test = GraspClassifier(seed=0, rate=0.0), toy(70, 4), toy(30, 5)
+    (train, new), (again, _) = classifier.fit(patches, labels, 2, test)
+    right = (classifier.probabilities(patches).argmax(1) == labels).mean()
+    assert train == again == pytest.approx(right), "where nothing is learnt"
+    learnt = GraspClassifier(seed=0).fit(patches, labels, 5, test)
+    assert learnt[-1][0] > 0.9 > learnt[0][0]
+    assert np.isnan(classifier.fit(patches, labels, 1)[0][1])
+    assert new == pytest.approx((classifier.probabilities(test[0]).argmax(1) == test[1]).mean())
+
+
+def test_steps_under_a_constant_gradient_are_the_rate():
+    weights = [np.zeros((2, 3), np.float32)]
+    adam = Adam(weights, 0.01)
+    for k in range(1, 40):
+        adam.step(weights, [np.full((2, 3), 0.5, np.float32)])
+        assert weights[0] == pytest.approx(-0.01 * k, rel=1e-3)
+    adam.step(weights, [np.full((2, 3), -0.5, np.float32)])
+    mean, square = (1 - 0.9**39) * 0.9 * 0.5 - 0.1 * 0.5, 0.25 * (1 - 0.999**40)
+    step = mean / (1 - 0.9**40) / (square / (1 - 0.999**40)) ** 0.5
+    assert weights[0] == pytest.approx(-0.39 - 0.01 * step, rel=1e-4)
+
+
+def test_largest_of_four_places_of_a_convolution_is_kept():
+    rng = np.random.default_rng(6)
+    inputs, weight = rng.standard_normal((2, 12, 12, 3)), rng.standard_normal((4, 3, 5, 5))
+    offset = rng.standard_normal(4)
+    every = np.array([[correlate(x.transpose(2, 0, 1), w, "valid")[0] for w in weight] for x in inputs])
+    largest = (every + offset[:, None, None]).reshape(2, 4, 4, 2, 4, 2).max(axis=(3, 5))
+    kept = _convolved(inputs.astype(np.float32), weight.astype(np.float32), offset.astype(np.float32))[2]
+    assert kept.transpose(0, 3, 1, 2) == pytest.approx(np.maximum(largest, 0), abs=1e-4)
+
+
+def test_scores_of_any_size_are_probabilities():
+    assert _softmax(np.array([[1000.0, 999.0, -1000.0]])) == pytest.approx(
+        np.array([[0.731059, 0.268941, 0.0]]), abs=1e-5
+    )
+
+
+def test_between_pixels_a_patch_is_straight():
+    places = np.clip((np.arange(28) + 0.5) * 24 / 28 - 0.5, 0, 23)
+    assert _resampling(24, 28) @ np.arange(24) == pytest.approx(places, abs=1e-6)
+    assert _resampling(24, 28).sum(axis=1) == pytest.approx(1.0)
 
 
 def test_confusion_counts_true_classes_in_rows():
@@ -77,3 +127,4 @@ def test_every_patch_is_taken_once_an_epoch():
     parts = list(_batches(np.random.RandomState(0), 150, 64))
     assert [len(part) for part in parts] == [64, 64, 22]
     assert sorted(np.concatenate(parts)) == list(range(150))
+    assert {tuple(next(_batches(np.random.RandomState(k), 2, 2)).tolist()) for k in range(9)} == {(0, 1), (1, 0)}
