@@ -507,7 +507,11 @@ def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
         ([f"2026-02-31 10:00:0{k},{k},1" for k in range(9)], "time,x,y\n", "line 2 holds .*its time must be a number"),
         ([ROWS[0], *(f"10:00:0{k},{k},1" for k in range(9))], "time,x,y\n", "line 3 holds .*its time must be a number"),
         ([f"23:59:5{k + 6 if k < 4 else 0},{k},1" for k in range(9)], "time,x,y\n", "time does not increase at line 6"),
-        ([f"2026-11-{28 - k // 4}T10:00:0{k},{k},1" for k in range(9)], "time,x,y\n", "time does not increase at line 6"),
+        (
+            [f"2026-11-{28 - k // 4}T10:00:0{k},{k},1" for k in range(9)],
+            "time,x,y\n",
+            "time does not increase at line 6",
+        ),
         (["2.0,NA,NA", *ROWS[1:]], "time,x,y\n", "line 2 holds '2.0,NA,NA': every entry must be a finite number"),
         (
             [f"10_59_5{k},{k},1" for k in range(9)],
