@@ -276,7 +276,8 @@ class Claim:
     ) -> str:
         if self.predicate is None:
             return NOT_TESTABLE
-        needed = [margin, *([printed] if self.printed else []), *([control] if self.control else [])]
+        needed = [margin, *readings.values()]
+        needed += [*([printed] if self.printed else []), *([control] if self.control else [])]
         if any(value is None for value in needed):
             return NOT_EVALUATED
         assert margin is not None

@@ -109,12 +109,17 @@ def leaderboard(
         own = [word for word in overrides if not word.lstrip("+~").startswith((*others,))]
         searches.append(search_of(case, metric[case.partition(".")[0]], sign, (), own))
     contexts = {search.experiment: search for search in reversed(searches)}
-    yours = [joined(context, *law) for context in contexts.values() for law in laws.items()]
-    rows = []
-    for search in [*searches, *(search for search in yours if search)]:
+    yours = [search for context in contexts.values() for law in laws.items() if (search := joined(context, *law))]
+    if laws and not yours:
+        kinds = ", ".join(f"{name} is of kind '{getattr(law, 'kind', 'holding')}'" for name, law in laws.items())
+        takes = {kind for search in searches for text in targets(search.values) if (kind := kind_of(text))}
+        raise InputError(f"no law fits: {kinds}; {', '.join(cases)} take '{', '.join(sorted(takes))}'")
+    rows, refused = [], list[InputError]()
+    for search in [*searches, *yours]:
         try:
             found = tuned(search)
         except InputError as error:
+            refused.append(error)
             found = Found(None, None, {}, 0, 0, [str(error)])  # a metric that this comparison does not have
         rows.append(
             {
@@ -125,5 +130,7 @@ def leaderboard(
                 "to know": "; ".join(found.edges) or ("" if search.ranges else "nothing to tune"),
             }
         )  # fmt: skip
+    if len(refused) == len(rows):
+        raise refused[0]
     last = float("inf")
     return sorted(rows, key=lambda row: (row["comparison"], last if row["tuned"] is None else sign * row["tuned"]))

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from dexrepro import chapters
 from dexrepro.checks import value_at
 from dexrepro.errors import InputError, nearest
 
@@ -93,6 +94,9 @@ def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> Non
                 raise InputError(
                     f"{of_case[1]}.{of_case[2]} does not set '{of_case[3]}' yet: add it, '+{override.input_line}'"
                 )
+            owner = {name: number for number in chapters.numbers() for name in chapters.names(number)}
+            if (name := key.partition(".")[0]) not in shipped and (other := owner.get(name)):
+                raise InputError(f"'{key}' is of chapter {other}, which is not selected")
             raise InputError(f"unknown key '{key}': {nearest(key, keys if '.' in key else shipped)}")
 
 

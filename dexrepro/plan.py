@@ -138,7 +138,9 @@ def _of_cases(plans: list[Plan], wanted: str | Sequence[str] | None) -> list[Pla
     patterns = [str(name) for name in (wanted if isinstance(wanted, list) else [wanted])]
     if not patterns:
         raise refused("case", "[]", "name a case")
-    wanted = matching(patterns, [job.case for plan in plans for job in plan.jobs])
+    about = [plan.experiment for plan in plans]
+    of = f" of {', '.join(about)}" if len(about) < 4 else f" of chapter {plans[0].chapter}"
+    wanted = matching(patterns, [job.case for plan in plans for job in plan.jobs], of)
     result = []
     for plan in plans:
         jobs = [job for job in plan.jobs if job.case in wanted]

@@ -416,8 +416,9 @@ def up_to_date(plan: Plan, presented: bool = True) -> bool:
         same = run["contents"] == plan.contents and not (presented and run["presentation"] != plan.presentation)
         same = same and run["version"] == __version__ and run["differs"] == plan.differs
         same = same and all(run["packages"][name] == number for name, number in plan.versions.items())
-        files = ("metrics.json", "claims.json", "config.yaml")
-        whole = all((plan.folder / name).stat().st_size for name in files)
+        kinds = (("metrics.json", dict), ("claims.json", list))
+        whole = all(isinstance(read_json(plan.folder / name), kind) for name, kind in kinds)
+        whole = whole and (plan.folder / "config.yaml").stat().st_size > 0
         return same and whole and all((plan.folder / "series" / name).exists() for name in run["series"])
     except (OSError, ValueError, KeyError, TypeError):
         return False

@@ -261,16 +261,15 @@ def run(
 ) -> tuple[Found, Path]:
     """Search with ``budget`` runs, store all of them under ``results/tuning``; what was found, and the file.
 
-    tell: is told how far it is, after every round. update: store them with the book's evidence instead.
+    tell: is told how far it is, after every round. update: store them with the book's evidence, too, at the end.
     """
     definition = chapters.load(search.chapter).experiment(search.experiment)
     about = {"case": search.name, "metric": search.metric, "sign": search.sign, "ranges": search.ranges,
              "seed": search.seed, **({"limits": search.limits} if search.limits else {})}  # fmt: skip
     path = results / "tuning" / f"{search.name}-{digest_of([about, search.values])[:10]}.json"
-    path = shipped(search.name) if update else path
     writable(results)
     path.parent.mkdir(parents=True, exist_ok=True)
-    kept = _kept(path)
+    kept = (_kept(shipped(search.name)) if update else {}) | _kept(path)
     rows: list[dict[str, Any]] = []
     with Pool(workers) as pool:
 
@@ -293,6 +292,10 @@ def run(
         for points in _rounds(search, budget - 1, rows):
             if len(points):
                 measure(list(points))
+    if update:
+        made, path = read_json(path), shipped(search.name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_json(path, made)
     return _found(search, rows), path
 
 

@@ -82,6 +82,7 @@ def test_verdicts_of_every_kind() -> None:
     assert verdict(control=holds, credits="the term") == "not attributed"
     assert verdict(control=fails, credits="the term") == "reproduced"
     assert verdict(readings={"another window": fails}) == "reading-dependent"
+    assert verdict(readings={"a case that was not run": less("e.absent.x", 1.0)}) == NOT_EVALUATED
     assert verdict(by_construction="the generator does it") == BY_CONSTRUCTION
     assert Claim("C", "1", "a falls", fails).evaluate({"e.b.x": 2.0}).verdict == "not reproduced"
     assert Claim("C", "1", "a falls", fails).evaluate({"e.b.x": None}).verdict == "not reproduced"

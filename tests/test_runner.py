@@ -62,6 +62,15 @@ def test_what_is_there_is_not_run_again_unless_forced(toy: Path) -> None:
     assert (toy / "results/chapter90/decay/run.json").stat().st_mtime_ns > stamp
 
 
+@pytest.mark.parametrize("name", ["metrics.json", "claims.json"])
+def test_a_damaged_result_is_made_anew(toy: Path, name: str) -> None:
+    run()
+    whole = (toy / "results/chapter90/decay" / name).read_bytes()
+    (toy / "results/chapter90/decay" / name).write_text('{"a": ')
+    run()
+    assert (toy / "results/chapter90/decay" / name).read_bytes() == whole
+
+
 def test_a_changed_file_of_the_user_changes_the_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)

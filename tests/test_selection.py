@@ -106,6 +106,6 @@ def test_some_cases_run_alone_as_a_result_of_their_own(toy: Path, capsys: pytest
     assert main(["draw", "chapter=90", "only=decay", "cases=gain*"]) == 0
     assert main(["run", "chapter=90", "only=decay", "case=fast,plain", "workers=1"]) == 0
     assert main(["run", "chapter=90", "only=decay", "case=gain7"]) == 2
-    assert "unknown case 'gain7': did you mean 'gain" in capsys.readouterr().err
+    assert "unknown case 'gain7' of decay: did you mean 'gain" in capsys.readouterr().err
     assert main(["run", "chapter=90", "only=decay", "case=*", "workers=1"]) == 0
     assert Path("results/chapter90/decay/run.json").exists(), "all cases are the whole result"

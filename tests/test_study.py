@@ -388,6 +388,7 @@ def test_an_unknown_claim_is_refused(folder: Path) -> None:
 def test_a_claim_that_is_not_testable_is_refused_with_the_reason() -> None:
     with pytest.raises(InputError, match=r"claim = C1.17 is not allowed: it is not testable: Fatigue"):
         sampling.experiments_of("1", [], "C1.17")
+    assert sampling.experiments_of("2", ["growth_cost", "movement_estimation"], None) == ["movement_estimation"]
 
 
 @pytest.mark.slow

@@ -158,10 +158,25 @@ def test_laws_of_a_folder_stand_beside_the_books_where_their_kind_fits(tmp_path,
     assert set(passive.ranges) == {f"laws.passive_impedance.{name}" for name in ("mass", "damping")}
     assert all(key.startswith("laws.impedance.") for key in proposed.ranges)
     assert mine.ranges == {"law.gain": (0.1, 1.0)}
+    with pytest.raises(
+        InputError, match=r"laws_of_a_folder\.Mine is of kind 'holding'; skill_reuse\.none take 'end_point'"
+    ):
+        comparison.leaderboard(["skill_reuse.none"], laws, ["rmse_mm"], 1, tuned)
     law = mine.values["law"]
     assert law["_target_"] == "laws_of_a_folder.Mine"
     assert (law["desired_force"], law["dt"]) == (1.0, mine.values["step"])
     assert "limit" not in law
+
+
+def test_a_metric_that_no_case_has_is_refused(tmp_path, monkeypatch):
+    (tmp_path / "laws_of_no_metric.py").write_text(LAW)
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def tuned(search):
+        raise InputError(f"unknown metric 'rms' of {search.name}")
+
+    with pytest.raises(InputError, match="unknown metric 'rms' of holding_comparison"):
+        comparison.leaderboard(["holding_comparison.s4"], comparison.laws_in(tmp_path), ["rms"], 1, tuned)
 
 
 def test_what_is_overridden_holds_for_the_laws_of_both_sides(tmp_path, monkeypatch):
@@ -231,6 +246,30 @@ def test_a_law_of_which_nothing_says_how_it_is_built_is_one_sentence(tmp_path, m
 
 
 # ----------------------------------------------------------------------------------------- searches that are shipped
+
+
+def test_a_shipped_search_is_replaced_by_a_whole_one_alone(toy, tmp_path, monkeypatch):
+    target = tmp_path / "shipped.json"
+    monkeypatch.setattr(tune, "shipped", lambda case: target)
+    search = Bowl(**vars(tune.search_of("decay.plain", "final", 1, ["start"])))
+    tune.run(search, 8, RESULTS, workers=1, update=True)
+    whole = target.read_bytes()
+
+    def interrupted(text):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        tune.run(search, 16, RESULTS, workers=1, tell=interrupted, update=True)
+    assert target.read_bytes() == whole
+    tune.run(search, 16, RESULTS, workers=1, update=True)
+    assert len(json.loads(target.read_text())["runs"]) == 16
+
+
+@pytest.mark.parametrize("word", ["minimise=x", "budget=3", "law.gain=1..2"])
+def test_a_shipped_search_is_made_again_as_it_was(command, word):
+    status, text = command(f"tune --update case={tune.searched()[0]} {word}")
+    assert status == 2
+    assert f"{word}: the search for" in text
 
 
 def of_the_book(case):

@@ -39,6 +39,8 @@ def check_command(options: argparse.Namespace) -> int:
     case = quoted(f"case={extra['case']}") if "case" in extra else None
     _check_accepted(accepted, numbers, options.update)
     if options.update:
+        if options.json:
+            raise InputError("--json has no meaning with --update")
         if case:
             raise InputError(f"{case} is not allowed with --update: what is stored is of all cases")
         for number in numbers:

@@ -33,8 +33,10 @@ def tune_command(options: argparse.Namespace) -> int:
         for name in tune.searched():
             tune_command(argparse.Namespace(update=True, selection=[f"case={name}", *words]))
         return OK
-    words = [*(tune.words_of(case) if options.update else ()), *words]
-    known, rest = _search_words(words, "tune")
+    made = tune.words_of(case) if options.update else []
+    if made and (other := [word for word in words if not word.startswith(("case=", "results=", "workers="))]):
+        raise InputError(f"{other[0]}: the search for {case} is shipped and is made again as it was, {' '.join(made)}")
+    known, rest = _search_words([*made, *words], "tune")
     experiment = known["case"].partition(".")[0]
     given, parameters = _given(rest, [experiment])
     if given and options.update:
@@ -81,8 +83,9 @@ def compare_command(options: argparse.Namespace) -> int:
     given, other = _given(rest, experiments)
     if other:
         raise InputError(f"'{other[0]}' has no meaning here; see: dexrepro compare --help")
+    laws = comparison.laws_in(known["laws"], say)
     rows = comparison.leaderboard(
-        names, comparison.laws_in(known["laws"], say), known["metric"].split(","), known["sign"],
+        names, laws, known["metric"].split(","), known["sign"],
         lambda search: tune.run(search, known["budget"], results, known["workers"], say)[0],
         [*map(quoted, given)],
     )  # fmt: skip
@@ -90,6 +93,9 @@ def compare_command(options: argparse.Namespace) -> int:
     for row in rows:
         shown.add_row(*(f"{value:.4g}" if isinstance(value, float) else str(value or "") for value in row.values()))
     show_table(shown)
+    for name, law in laws.items():
+        if name.rpartition(".")[2] not in {row["law"] for row in rows if row["whose"] == "yours"}:
+            say(f"{name} is of kind '{getattr(law, 'kind', 'holding')}', which no case here takes: left out")
     changed = [digest_of(given)[:10]] if given else []
     path = results / "tuning" / f"{'-'.join(['leaderboard', *experiments, *changed])}.csv"
     pd.DataFrame(rows).to_csv(path, index=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,6 +11,8 @@ from pathlib import Path
 from dexrepro.commands import FAILED, OK, command, option, out, say, warn
 from dexrepro.errors import InputError, refused
 from dexrepro.keys import SELECTION
+
+UNWRITABLE = (errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOSPC)
 
 
 @command(
@@ -133,6 +136,8 @@ def draw_command(options: argparse.Namespace) -> int:
                 redraw(read_json(folder / "run.json")["chapter"], experiment.name, folder)
                 made = [folder]
         except Exception as error:  # a result of another version, say; the others can still be drawn
+            if isinstance(error, OSError) and error.errno in UNWRITABLE:
+                raise InputError(f"{results if kind else folder} cannot be written ({error.strerror})") from error
             warn(f"{folder} cannot be drawn, run it again: {sentence(error)}")
             status = FAILED
         else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +15,12 @@ from dexrepro.claims import Claim, Erratum, cases_in, filled
 from dexrepro.config import compose_chapter
 from dexrepro.damage import check_result
 from dexrepro.errors import InputError, nearest
+from dexrepro.overrides import selecting
+from dexrepro.plan import plan_chapter
 from dexrepro.provenance import provenance
 from dexrepro.report import equations, parameters, relations, sources, verdicts, words
 from dexrepro.report.listing import chapter_listing
-from dexrepro.selection import matches
+from dexrepro.selection import matches, quoted
 from dexrepro.storage import read_json
 from dexrepro.study import draws, summaries
 
@@ -65,7 +67,8 @@ def _claim(word: str, results: Path) -> Iterator[str]:
 
 def _about_claim(number: str, claim: Claim, results: Path) -> Iterator[str]:
     name, chapter, composed = claim.experiment, chapters.load(number), compose_chapter(number)
-    where, metrics = _metrics(number, name, results) if name else ("", {})
+    cases, over_several = cases_in(claim.metrics)
+    where, metrics = _metrics(number, name, results, () if over_several else cases) if name else ("", {})
     row = next((s["claims"].get(claim.id) for s in summaries.stored(results) if s["experiment"] == name), None)
     shown: dict[str, Any] = claim.evaluate(metrics, settings(composed, name) if name else {}).as_dict()
     shown |= {"study": row, "robustness": verdicts.robustness(row)}
@@ -107,20 +110,23 @@ def _about_claim(number: str, claim: Claim, results: Path) -> Iterator[str]:
     yield from _written(number, claim.id)
     if name:
         yield from _code(number, name)
-        cases, over_several = cases_in(claim.metrics)
         some = "" if over_several else f" 'case=[{','.join(sorted(cases))}]'"
         own = chapters.option(number)
         yield f"  $ dexrepro run{own} chapter={number} only={name}{some}"
-        yield f"  $ dexrepro check{own} chapter={number} only={name}"
+        yield f"  $ dexrepro check{own} chapter={number} claim={claim.id}"
         yield f"  $ dexrepro study{own} chapter={number} claim={claim.id}"
 
 
-def _metrics(number: str, name: str, results: Path) -> tuple[str, dict[str, Any]]:
-    """The metrics of an experiment's result here, else those stored; and which they are."""
-    folder = results / f"chapter{number}" / name
-    if (folder / "metrics.json").exists():
-        check_result(folder, "metrics.json")
-        return f"as run here, {folder}", read_json(folder / "metrics.json")
+def _metrics(number: str, name: str, results: Path, cases: Sequence[str] = ()) -> tuple[str, dict[str, Any]]:
+    """The metrics of an experiment's result here, or of a run of some ``cases``, else those stored; which they are."""
+    folders = [results / f"chapter{number}" / name]
+    if cases and (results / "runs").exists():
+        words = [*selecting(results, [name]), quoted(f"case=[{','.join(cases)}]")]
+        folders += [plan.folder for plan in plan_chapter(number, words, write=False)[0]]
+    for folder in folders:
+        if (folder / "metrics.json").exists():
+            check_result(folder, "metrics.json")
+            return f"as run here, {folder}", read_json(folder / "metrics.json")
     return "as stored with dexrepro", baselines.Baseline.of(number, name).values
 
 

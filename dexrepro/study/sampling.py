@@ -31,7 +31,7 @@ def experiments_of(chapter: str, only: Sequence[str], claim: str | None) -> list
     by_id = {item.id: item for item in loaded.claims if item.predicate}
     if claim is None:
         about = {item.experiment for item in by_id.values()}
-        if without := [name for name in only if name not in about]:
+        if without := [e.name for e in loaded.experiments if e.name in only and e.name not in about]:
             raise InputError(f"{', '.join(without)} of chapter {chapter}: there is no claim that a study could test")
         return [e.name for e in loaded.experiments if e.name in about and (not only or e.name in only)]
     if claim not in by_id:
