@@ -9,11 +9,13 @@ from dexrepro.primitives.tables import CLOCKS, COMMENT, SHOWN, Table, entries, i
 
 LENGTHS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
-SPELLINGS = {"inch": "in inches", "m": "meters metres", "cm": "centimeters centimetres", "min": "minutes",
-             "mm": "millimeters millimetres", "s": "sec secs seconds",
-             "ms": "msec msecs millisec millisecs milliseconds millis",
-             "us": "µs μs usec usecs microsec microsecs microseconds micros",
-             "ns": "nsec nsecs nanosec nanosecs nanoseconds nanos"}  # fmt: skip
+SPELLINGS = {"inch": "in inches", "m": "meter meters metre metres metern", "min": "minute minutes minuten",
+             "cm": "centimeter centimeters centimetre centimetres zentimeter zentimetern",
+             "mm": "millimeter millimeters millimetre millimetres millimetern",
+             "s": "sec secs second seconds sekunde sekunden",
+             "ms": "msec msecs millisec millisecs millisecond milliseconds millis millisekunden",
+             "us": "µs μs usec usecs microsec microsecs microsecond microseconds micros mikrosekunden",
+             "ns": "nsec nsecs nanosec nanosecs nanosecond nanoseconds nanos nanosekunden"}  # fmt: skip
 SPELT = {word: unit for unit, words in SPELLINGS.items() for word in words.split()}
 ANGLES = {"deg", "degree", "degrees", "rad", "radian", "radians"}
 RELATIVE = {"norm", "normalised", "normalized"}
@@ -68,10 +70,13 @@ def words_in(name: str) -> list[str]:
 
 
 def unit_in(name: str) -> str:
-    """The unit in a column's name: in brackets, or the last word behind the first that is one; empty where none is."""
+    """The unit in a column's name: in brackets, or the last word behind the first that is one; empty where none is.
+
+    x_in is in inches, x_in_world in what the name does not tell."""
     if bracket := re.search(r"[\[(]([^\])]*)", name):
         return re.sub(r"^in\s+", "", bracket[1].strip())
     first, *rest = words_in(name) or [""]
+    rest = [word for word in rest[:-1] if word != "in"] + rest[-1:]
     found = next((word for word in reversed(rest) if word in UNITS - NAMES["time"][0]), "")
     return found or (first if first in (OTHERS if rest else TICKS) else "")
 
@@ -220,8 +225,8 @@ class Header:
         line, columns = self.table.lines[k], self.table.columns
         names = self._grouped(k)
         units, known = [name.strip("[]() ") for name in names], are_units(names)
-        if columns is not None:
-            if known and len(units) == len(self.names):  # a row of units above the names
+        if columns is not None:  # perhaps a row of units above the names, of which others may be of no quantity here
+            if len(units) == len(self.names) and are_units([units[column] for column in columns]):
                 self.units = [unit or units[column] for unit, column in zip(self.units, columns, strict=True)]
         elif known or self._found(names) < len(self.table.wanted):
             if known or not (COMMENT.match(line) or numbers_in(line)):
@@ -274,7 +279,9 @@ class Header:
         table, named = self.table, len(self.names)
         rows = table.first_rows(table.separator)
         short = self.blanks and max(map(len, rows), default=named) < named
-        for k, row in zip(table.body, rows if named else (), strict=False):
+        many = [k for k in table.body if len(table.lines[k].split(table.separator)) > named]
+        for k in [*table.body[:short], *many] if named else ():
+            row = table.row(k)
             note = not table.separator and not all(map(is_entry, row[named - 1 : named + 1]))  # of several words
             if short or (len(row) > named and not note):
                 shown = f"line {k + 1} has {len(row)} entries, but the header names {named} columns"

@@ -97,6 +97,10 @@ class Table:
         """The entries of those rows that tell how all are written."""
         return [self._split(self.lines[k], separator) for k in self.body[:LOOKED_AT]]
 
+    def row(self, k: int) -> list[str]:
+        """The entries of a row."""
+        return self._split(self.lines[k], self.separator)
+
     def _split(self, line: str, separator: str | None) -> list[str]:
         """The entries of a row, without quotes, a remark behind them and empty ones at its end."""
         row = entries(line, separator) if separator else line.split()
@@ -132,7 +136,7 @@ class Table:
     @property
     def _first(self) -> str:
         """The first entry that is wanted."""
-        return self._chosen(self._split(self.lines[self.body[0]], self.separator))[0] if self.body else ""
+        return self._chosen(self.row(self.body[0]))[0] if self.body else ""
 
     def _unwrapped(self, time: Array) -> Array:
         """A clock's times (N,) [s], one turn on behind midnight, or behind the full hour where they have none."""
@@ -163,7 +167,7 @@ class Table:
         """The same slowly, with a sentence for the first line that cannot be used; empty rows are left out."""
         data, lines, marks, dated = [], [], set[str](), self.dated
         for k in self.body:
-            if not (row := self._split(self.lines[k], self.separator)):
+            if not (row := self.row(k)):
                 continue
             if len(row) != len(self.wanted) and self.columns is None:
                 must = f"it must have {', '.join(self.wanted)}, or a first line must name the columns"

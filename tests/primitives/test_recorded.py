@@ -235,6 +235,11 @@ def test_a_clock_goes_on_behind_midnight_and_the_full_hour(tmp_path: Path, form:
         ("ms,mm,mm\nnote\ntime,x,y", Format(), 1e-3, 1e-3),
         ("[ms] [mm] [mm]\ntime x y", Format(), 1e-3, 1e-3),
         ("# ms,mm,mm", Format(), 1e-3, 1e-3),
+        ("time in s,x in millimeter,y in millimeter", Format(), 1e-3, 1),
+        ("Zeit in Sekunden,x in Millimetern,y in Millimetern", Format(), 1e-3, 1),
+        ("time,x_in_world,y_in_world", Format("m", "s"), 1, 1),
+        ("t_s,tool_in_base.x,tool_in_base.y", Format("cm"), 1e-2, 1),
+        ("time (second),x [meter],y [meter]", Format(), 1, 1),
         ("time,x,y\nseconds,centimeters,centimeters", Format(), 1e-2, 1),
         ("time,x,y", Format("mm", "ms"), 1e-3, 1e-3),
         ("time,x [px],y [px]", Format("mm", "s"), 1e-3, 1.0),
@@ -555,6 +560,12 @@ def test_a_place_goes_before_others_of_as_many_words(tmp_path: Path) -> None:
             "line 2 holds .*either . or , and no mark between t",
         ),
         (ROWS, "0,1,2\n", "line 1 numbers the columns; delete it, or name them time, x, y"),
+        (
+            [*ROWS * 3, "0.1,1,2,3"],
+            "time,x,y\n",
+            "line 32 has 4 entries, but the header names 3 columns, time, x, y; .*",
+        ),
+        (ROWS, "# all lengths in millimeter\ntime,x,y\n", "line 1 says 'in millimeter', .*set unit=mm if that is"),
         (ROWS, "time,x,y\ns,px,px\n", "its header gives x in px; set unit= to m, cm, mm, inch"),
         (ROWS, "time,x [mm],y [cm]\n", "its header gives x, y in mm, cm; give all in one unit"),
         ([row + ",0" for row in ROWS], "", "line 1 has 4 numbers; it must have time, x, y"),
@@ -755,6 +766,11 @@ def test_one_row_is_too_few_and_said_so(tmp_path: Path) -> None:
 def test_units_of_time_are_those_of_the_header(tmp_path: Path, spelt: str) -> None:
     file = write(tmp_path, [f"{0.1 * k},{k},{2 * k}" for k in range(10)], f"time [{spelt}],x,y\n")
     assert read_path(file, axes=2)[0][-1] == pytest.approx(54)
+
+
+def test_units_above_the_names_may_be_of_other_quantities_too(tmp_path: Path) -> None:
+    file = write(tmp_path, [f"{0.1 * k},{k},{2 * k},5" for k in range(10)], "s,mm,mm,N\ntime,x,y,force\n")
+    assert read_path(file, axes=2)[1][-1] == pytest.approx([0.009, 0.018])
 
 
 def test_the_place_is_of_the_wanted_axes(tmp_path: Path) -> None:
