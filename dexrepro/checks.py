@@ -151,7 +151,8 @@ _VECTOR = re.compile(r"(^|_)(base|centre|place|offset|force|gravity|semi_axes|po
 
 
 def check_lengths(config: Mapping[str, Any], shipped: Mapping[str, Any], where: str) -> None:
-    """Refuse lists that do not have as many numbers as what they describe has: a link, an axis, a joint."""
+    """Refuse lists that do not have as many numbers as what they describe has, a link, an axis, a joint, and what is no
+    list of counts, or no range."""
     links = {key: len(config[key]) for key in _A_LINK if isinstance(config.get(key), list)}
     if len(set(links.values())) > 1:
         shown = ", ".join(f"{key} has {count}" for key, count in links.items())
@@ -164,6 +165,13 @@ def check_lengths(config: Mapping[str, Any], shipped: Mapping[str, Any], where: 
             other = isinstance(value, list) and len(value) != len(book) and key not in _A_LINK
             if other or is_number(value):
                 raise refused(f"{where}.{key}", value, f"have {len(book)} values")
+        elif isinstance(book, list) and key == "counts":
+            if not (isinstance(value, list) and value and all(is_whole(count) and count > 0 for count in value)):
+                raise refused(f"{where}.{key}", value, "be a list of whole numbers, each 1 or greater")
+        elif isinstance(book, list) and key.endswith("_range"):
+            numbers = isinstance(value, list) and len(value) == 2 and all(map(is_number, value))
+            if not (numbers and value[0] < value[1]):
+                raise refused(f"{where}.{key}", value, "be [LOW, HIGH], low before high")
 
 
 def returned(thing: Any, function: str, must: str, kind: type = Mapping, of: type | tuple[type, ...] = object) -> Any:

@@ -70,7 +70,7 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
 
     search = [f"hydra.searchpath=[{in_quotes(f'file://{Path(extra_dir).resolve()}')}]"] if extra_dir else []
     added = [text for text in overrides if text.startswith("+")]
-    refuse_sweeps(overrides)
+    refuse_sweeps(overrides, shipped)
     if extra_dir:
         own_keys(overrides, extra_dir)  # each file is looked at
     try:
@@ -90,6 +90,10 @@ def compose_chapter(chapter: str, overrides: Sequence[str] = (), extra_dir: str 
                 full = inherited(raw)
                 if clash := next(_clashes(read_config(path), {**full, **full.get("scene", {})}), ""):
                     raise InputError(f"{path}: {clash}") from error
+        if gone := re.match(r"Could not delete from config\. '([\w.]+)' does not exist", str(cause)):
+            of_another = gone[1] in keys_in(inherited(raw))
+            why = "is inherited from another block and stays; set it to null" if of_another else "is not there"
+            raise InputError(f"'{gone[1]}' {why}") from error
         raise InputError(one_line(cause)) from error
     except (yaml.YAMLError, ValueError, TypeError) as error:
         raise InputError(one_line(error.__cause__ or error)) from error

@@ -30,7 +30,9 @@ def _inherited(node: Any, composed: Mapping[str, Any], within: tuple[str, ...]) 
     for parent, taken in _parents(node.get(INHERITS, [])):
         base = value_at(composed, parent)
         this = f"{parent}: {', '.join(taken)}" if taken else parent
-        if not isinstance(base, Mapping) or this in within:
+        if not isinstance(base, Mapping):
+            raise InputError(f"{parent} = {base} is not allowed: it must hold keys with values, which others inherit")
+        if this in within:
             raise InputError(
                 f"{INHERITS}: {this} is not allowed: it must name a block that does not inherit from this one"
             )

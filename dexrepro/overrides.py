@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dexrepro import chapters
-from dexrepro.checks import value_at
-from dexrepro.errors import InputError, nearest
+from dexrepro.checks import FILES, is_number, value_at
+from dexrepro.errors import InputError, nearest, refused
 
 if TYPE_CHECKING:  # Hydra is imported where it is needed: it takes as long as a whole command may
     from hydra.core.override_parser.types import Override
@@ -41,9 +41,15 @@ def selecting(results: Path, only: Sequence[str] = ()) -> list[str]:
 
 def forced(overrides: Sequence[str], raw: Mapping[str, Any]) -> list[str]:
     """Overrides of inherited keys, which the files do not spell out, as Hydra takes them."""
-    keys = set(keys_in(raw))
-    return [f"++{text}" if re.match(r"[A-Za-z_]\w*\.", text) and text.partition("=")[0] not in keys
-            and not text.startswith("hydra") else text for text in overrides]  # fmt: skip
+    keys, result = set(keys_in(raw)), list[str]()
+    for text in overrides:
+        key, _, value = text.partition("=")
+        inherits = re.match(r"[A-Za-z_]\w*\.", text) and key not in keys and not text.startswith("hydra")
+        if key == "scene.elastic" and isinstance(value_at(raw, key), Mapping) and value.startswith("["):  # several now
+            result += [f"~{key}", f"+{text}"]
+        else:
+            result.append(f"++{text}" if inherits else text)
+    return result
 
 
 def understood(overrides: Sequence[str]) -> list[Override]:
@@ -66,12 +72,16 @@ def understood(overrides: Sequence[str]) -> list[Override]:
     return found
 
 
-def refuse_sweeps(overrides: Sequence[str]) -> None:
-    """Refuse several values in place of one."""
+def refuse_sweeps(overrides: Sequence[str], shipped: Mapping[str, Any]) -> None:
+    """Refuse several values in place of one, and say how one list is written where there is one, or a number."""
     for override in understood(overrides):
         if override.is_sweep_override():
             key, _, values = str(override.input_line).partition("=")
-            listed = f"; one list is written {key}=[{values}]" if override.is_choice_sweep() else ""
+            now, listed = value_at(shipped, key), ""
+            if isinstance(now, list) or key.rpartition(".")[2] in FILES:
+                listed = f"; one list is written {key}=[{values}]"
+            elif isinstance(now, float) and re.fullmatch(r"-?\d+,\d+", values):
+                listed = f"; one number is written {key}={values.replace(',', '.')}"
             raise InputError(f"'{key}={values}' is a sweep, which needs -m, a run for each value{listed}")
 
 
@@ -98,6 +108,10 @@ def check_overrides(overrides: Sequence[str], shipped: Mapping[str, Any]) -> Non
             if (name := key.partition(".")[0]) not in shipped and (other := owner.get(name)):
                 raise InputError(f"'{key}' is of chapter {other}, which is not selected")
             raise InputError(f"unknown key '{key}': {nearest(key, keys if '.' in key else shipped)}")
+        value = None if override.is_delete() or override.is_sweep_override() else override.value()
+        block = isinstance(value_at(shipped, key), Mapping) and not key.endswith(".cases")
+        if block and (is_number(value) or isinstance(value, bool)):
+            raise refused(key, value, "hold keys with values")
 
 
 def keys_in(node: Mapping[str, Any], prefix: str = "") -> Iterator[str]:

@@ -33,6 +33,10 @@ TICK = 0.2  # s between looks at workers whose end nobody announces
 BLAS_THREADS = "DEXREPRO_BLAS_THREADS"  # variable of the environment: another count than one, to see what rounding does
 
 
+WARNED = "it was warned that "
+"""Begins a note that an error carries of a warning before it."""
+
+
 def sentence(error: BaseException) -> str:
     """What went wrong, in one line, and the line of the user's file that did it."""
     told, text, place = isinstance(error, InputError), one_line(error), ""
@@ -41,7 +45,8 @@ def sentence(error: BaseException) -> str:
         file = file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
         text = one_line(error.msg if isinstance(error, SyntaxError) else text or frame.line)
         place = f" ({file}, line {frame.lineno})" if file.name not in text else ""
-    return ("" if told else f"{type(error).__name__}: ") + text + place
+    said = "".join(f"; {note}" for note in getattr(error, "__notes__", ()) if note.startswith(WARNED))
+    return ("" if told else f"{type(error).__name__}: ") + text + place + said
 
 
 def _own_line(error: BaseException | None) -> traceback.FrameSummary | None:

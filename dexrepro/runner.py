@@ -27,7 +27,7 @@ from dexrepro.errors import COMPLETES, InputError, one_line
 from dexrepro.experiment import Config, Experiment, Metrics, Recording
 from dexrepro.own_code import check_own, import_anew
 from dexrepro.plan import Job, Plan, outdated
-from dexrepro.pool import Failure, Pool, start_method
+from dexrepro.pool import WARNED, Failure, Pool, start_method
 from dexrepro.progress import Silent
 from dexrepro.result import CaseEntry, RunEntry, flat, present, redraw
 from dexrepro.storage import (
@@ -97,7 +97,12 @@ def execute(job: Job) -> CaseEntry:
         config = Watched.of(live(job.config)) if job.watched else live(job.config)
         if job.own != own_digest(job.config) and "__main__." not in str(job.config):
             raise InputError("a file that it uses was edited meanwhile; the same command runs it again")
-        recording, metrics, wall = _run(experiment, config, job.seed)
+        try:
+            recording, metrics, wall = _run(experiment, config, job.seed)
+        except Exception as error:
+            for text in sorted({one_line(warning.message) for warning in caught}):
+                error.add_note(f"{WARNED}{text}")
+            raise
     factor = recording.simulated / wall if recording.simulated else None
     doubts = sorted({one_line(warning.message) for warning in caught})
     left = [*unread(config)] if job.watched else None

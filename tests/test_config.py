@@ -178,6 +178,32 @@ def test_a_block_inherits_named_keys_of_another() -> None:
         inherited({**blocks, "e": {"inherits": {"shared": ["gian"]}}})
     with pytest.raises(InputError, match="does not inherit from this one"):
         inherited({"a": {"inherits": {"b": ["x"]}}, "b": {"inherits": {"a": ["x"]}}})
+    with pytest.raises(InputError, match="a = 3 is not allowed: it must hold keys with values, which others inherit"):
+        inherited({"a": 3, "b": {"inherits": "a"}})
+
+
+@pytest.mark.parametrize(
+    ("word", "sentence"),
+    [
+        ("letter_accuracy.kernels=3", "kernels = 3 is not allowed: it must hold keys with values"),
+        ("~letter_accuracy.unit", "'letter_accuracy.unit' is inherited from another block and stays; set it to null"),
+        ("letter_accuracy.kernels.width=0,6", "one number is written letter_accuracy.kernels.width=0.6"),
+        ("letter_accuracy.kernels.counts=5,6", r"one list is written letter_accuracy.kernels.counts=\[5,6\]"),
+        ("letter_accuracy.unit=mm,cm", "is a sweep, which needs -m, a run for each value$"),
+        ("force_tracking.step=0.1", "'force_tracking.step' is of chapter 1, which is not selected"),
+    ],
+)
+def test_an_override_that_cannot_be_is_one_sentence(word: str, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        compose_chapter("5", [word])
+
+
+@pytest.mark.parametrize("value", ["5", "[5,0]", "[5.5]", "[]"])
+def test_counts_are_a_list_of_whole_numbers(value: str) -> None:
+    with pytest.raises(InputError, match=r"counts = .* is not allowed: it must be a list of whole numbers, each 1"):
+        plan_chapter("5", ["only=letter_accuracy", f"letter_accuracy.kernels.counts={value}"], write=False)
+    with pytest.raises(InputError, match=r"width_range = .* is not allowed: it must be \[LOW, HIGH\], low before high"):
+        plan_chapter("5", ["only=letter_accuracy", "letter_accuracy.kernels.width_range=[2,1]"], write=False)
 
 
 def test_an_inherited_key_can_be_overridden_there_and_where_it_comes_from() -> None:

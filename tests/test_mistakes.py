@@ -56,7 +56,7 @@ def result(toy: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ("decay", "'decay' is not an override of the form key=value, such as"),
         ("+decay.cases.größe={}", "; a key has letters from a to z alone"),
         ("decay.cases.mine={rate: 3}", "decay has no case 'mine': add it, '+decay.cases.mine={rate: 3}'"),
-        ("decay.rate=1,2", "'decay.rate=1,2' is a sweep, which needs -m, a run for each value; one list is written"),
+        ("decay.rate=1,2", "'decay.rate=1,2' is a sweep, which needs -m, a run for each value"),
         ("sed=3", "unknown key 'sed': did you mean 'seed'?"),
         ("claim=C90.1", "unknown claim 'C90.1': did you mean 'C90.01'?"),
     ],

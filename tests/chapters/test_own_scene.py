@@ -245,6 +245,10 @@ def test_a_doubtful_file_is_said_once_and_kept_with_the_result(
         text = " ".join(capsys.readouterr().err.split())
         assert text.startswith("warning: URDF file 'tiny.urdf': link upper by 1.2 %: no rigid body has this inertia")
         assert text.count("warning") == 1
+    words[1] = "scene.leader={line: {start: [7,0,0], end: [7.1,0,0], period: 4}}"
+    assert run_overrides(["chapter=own", *words, "workers=1", "quiet=true"]) == 1
+    text = " ".join(capsys.readouterr().err.split())
+    assert "; it was warned that URDF file 'tiny.urdf': link upper by 1.2 %" in text
 
 
 def test_folders_and_files_have_the_names_that_people_give_them(
