@@ -8,7 +8,7 @@ the spread of the study's samples: then another engine moves it more than what t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -85,10 +85,9 @@ def compare(plan: Plan, folder: Path) -> Comparison:
     baseline, made = Baseline.of(plan.chapter, plan.experiment), read_json(folder / "metrics.json")
     both = [name for name in baseline.metrics if name in made]
     outside = [name for name in both if not agrees(made[name], baseline.metrics[name])]
-    samples = _samples(plan) if outside else []
+    spreads = _spreads(plan.experiment, outside)
     differences = [
-        Difference(name, baseline.metrics[name]["value"], made[name], _spread([row.get(name) for row in samples]))
-        for name in outside
+        Difference(name, baseline.metrics[name]["value"], made[name], spreads[name]) for name in outside
     ]
     verdicts = {claim.id: claim.evaluate(made).verdict for claim in chapters.load(plan.chapter).claims}
     claims = {
@@ -99,11 +98,21 @@ def compare(plan: Plan, folder: Path) -> Comparison:
     return Comparison(plan.chapter, plan.experiment, plan.versions[OTHER], len(both), differences, claims)
 
 
-def _samples(plan: Plan) -> list[Mapping[str, float | None]]:
-    return [
-        flat(plan.experiment, {case: row.get("metrics", {}) for case, row in entry["cases"].items()})
-        for entry in shipped_samples(plan.experiment)
-    ]
+def respread(experiment: str) -> None:
+    """Put the spreads of the study that is shipped into the comparison that is shipped."""
+    path = table(Path(), shipped=True)
+    for item in stored(path):
+        if item.experiment == experiment and item.metrics:
+            spreads = _spreads(experiment, [one.name for one in item.metrics])
+            keep([replace(item, metrics=[replace(one, spread=spreads[one.name]) for one in item.metrics])], path)
+
+
+def _spreads(experiment: str, names: Sequence[str]) -> dict[str, tuple[float, float] | None]:
+    """Of each number among the samples of the study that is shipped."""
+    entries = shipped_samples(experiment) if names else []
+    cases = ({case: row.get("metrics", {}) for case, row in entry["cases"].items()} for entry in entries)
+    rows = [flat(experiment, metrics) for metrics in cases]
+    return {name: _spread([row.get(name) for row in rows]) for name in names}
 
 
 def _spread(values: Sequence[float | None]) -> tuple[float, float] | None:

@@ -152,3 +152,11 @@ def test_the_manual_names_the_experiments_and_cases_whose_numbers_differ():
         names = [entry.name for name in re.findall(r"`(\w+)`", experiments) for entry in differ[name]]
         for case in re.findall(r"`(\w+)`", numbers):
             assert any(name.split(".")[1].startswith(case) for name in names), (experiments, case)
+
+
+@pytest.mark.parametrize(
+    "item", crosscheck.stored(crosscheck.table(Path(), shipped=True)), ids=lambda item: item.experiment
+)
+def test_the_shipped_spreads_are_those_of_the_shipped_study(item: Comparison) -> None:
+    spreads = crosscheck._spreads(item.experiment, [one.name for one in item.metrics])
+    assert {one.name: one.spread for one in item.metrics} == spreads

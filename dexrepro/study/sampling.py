@@ -104,6 +104,8 @@ def run(
                 undecided = [c for c in claims if words.get(c.id, OPEN if look == 0 else "") == OPEN]
             if failed or not undecided or time.time() > deadline:
                 break
+    if update:
+        crosscheck.respread(experiment)
     if failed:
         raise SamplesFailed(_sentence(experiment, failed))
     return target
