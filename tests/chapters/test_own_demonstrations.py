@@ -14,7 +14,8 @@ from dexrepro.chapters.chapter5 import crossing, letters
 from dexrepro.chapters.chapter5.obstacle_crossing import experiment as obstacle_crossing
 from dexrepro.chapters.chapter5.style_transformation import experiment as style_transformation
 from dexrepro.chapters.chapter6.planar_skill import experiment as planar_skill
-from dexrepro.chapters.chapter7 import skills
+from dexrepro.chapters.chapter7 import desk, skills
+from dexrepro.chapters.chapter7.reaching_demonstrations import experiment as reaching_demonstrations
 from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
 from dexrepro.errors import InputError
 from dexrepro.plan import plan_chapter
@@ -105,6 +106,16 @@ def test_a_reach_on_another_desk_is_learned_after_following_the_refusal(goal: tu
     ordinary, reactions = attempt()
     assert ordinary[:, -1] == pytest.approx(np.array([[40 + goal[0], 10 + goal[1], 0.0]] * len(ordinary)), abs=0.2)
     assert np.isfinite(reactions).all()
+
+
+def test_the_arm_stands_before_a_reach_elsewhere_and_is_not_shown_where_that_is_too_long() -> None:
+    elsewhere = skills.moved_scene((30, 20), (50, 30)).split()
+    config = case("7", "reaching_demonstrations", "corrected", *elsewhere)
+    assert len(reaching_demonstrations.simulate(config, rng("reaching_demonstrations")).images) == 5
+    assert np.array_equal(desk.before_arm(np.ones(3), case("7", "reaching_demonstrations", "corrected")), np.ones(3))
+    config = case("7", "reaching_demonstrations", "corrected", "shared.scene.goal=[80,36]", "shared.scene.far=[40,18]")
+    with pytest.warns(UserWarning, match=r"the arm is not shown: .* out of the arm's reach of 0\.267 m"):
+        assert not reaching_demonstrations.simulate(config, rng("reaching_demonstrations")).images
 
 
 @pytest.mark.parametrize(
