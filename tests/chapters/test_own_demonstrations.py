@@ -33,6 +33,7 @@ def recordings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, columns in {
         "letter": (20 + 10 * np.sin(2 * np.pi * progress), 40 * progress),
         "over": (12 * progress - 6, 0 * share, 5 * np.sin(np.pi * share)),
+        "back": (30 + 0 * share, 20 + 0 * share, 5 * np.sin(np.pi * share)),
     }.items():
         np.savetxt(f"{name}.csv", np.column_stack([0.7 * share, *columns]), delimiter=",")
 
@@ -78,12 +79,20 @@ def test_the_printed_amplitude_is_not_evaluated_where_it_is_not_defined() -> Non
         ("over.csv", r"demonstrations: they go from \(-6, 0\) to \(6, 0\) cm instead of from \(2.3, 0\) to \(20, 9\)"),
         ("letter.csv", "demonstrations: 'letter.csv': line 1 has 3 numbers; it must have time, x, y, z"),
         ("no*.csv", r"demonstrations: cannot read 'no\*.csv'"),
+        ("back.csv", r"demonstrations: their start and their goal are the same place, \(30, 20\) cm"),
     ],
 )
 def test_a_reach_that_cannot_be_used_gets_one_sentence(files: str, sentence: str) -> None:
     config = configured("7", "reaching_demonstrations", "corrected", f"demonstrations={files}")
     with pytest.raises(InputError, match=sentence):
         skills.demonstrate(config)
+
+
+@pytest.mark.parametrize("part", ["scene", "task"])
+def test_a_reach_to_where_it_begins_is_refused(part: str) -> None:
+    config = case("7", "fuzzy_generalisation", "main", f"shared.{part}.goal=${{shared.{part}.start}}")
+    with pytest.raises(InputError, match=rf"{part}\.goal = .* is not allowed: it must be another place than {part}"):
+        skills.reach(config, part)
 
 
 @pytest.mark.parametrize("goal", [(-6.0, 3.0), (30.0, 15.0), (1.0, -9.0)])
