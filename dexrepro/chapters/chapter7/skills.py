@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array
-from dexrepro.chapters.demonstrations import recorded
+from dexrepro.chapters.demonstrations import check_by_name, recorded
 from dexrepro.control.contract import printed_forms
 from dexrepro.errors import InputError, nearest, refused
 from dexrepro.experiment import Config
@@ -127,6 +127,7 @@ def recorded_reaches(config: Config, shape: tuple[int, ...]) -> Array:
 def with_recorded_reactions(config: Config, reactions: Array) -> Array:
     """The same (conditions, repetitions, N, 3) [cm] with the user's own in the place of some, by condition."""
     known = {"_".join(c.labels): index for index, c in enumerate(conditions(config))}
+    check_by_name(config.reactions, "reactions", next(iter(known)))
     for name, files in (config.reactions or {}).items():
         if name not in known:
             raise InputError(f"reactions: unknown condition '{name}': {nearest(name, known)}")
