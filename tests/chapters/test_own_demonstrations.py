@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,9 @@ from cases import case, rng
 
 from dexrepro.case import generator
 from dexrepro.chapters.chapter5 import crossing, letters
+from dexrepro.chapters.chapter5.bounded_tracking import experiment as bounded_tracking
+from dexrepro.chapters.chapter5.knowledge_reuse import experiment as knowledge_reuse
+from dexrepro.chapters.chapter5.letter_accuracy import experiment as letter_accuracy
 from dexrepro.chapters.chapter5.obstacle_crossing import experiment as obstacle_crossing
 from dexrepro.chapters.chapter5.style_transformation import experiment as style_transformation
 from dexrepro.chapters.chapter6.planar_skill import experiment as planar_skill
@@ -191,6 +195,34 @@ def test_a_demonstration_that_nothing_learns_from_is_refused(
     config = configured("5", experiment, "default", f"demonstrations={{{given}: over.csv}}")
     with pytest.raises(InputError, match=f"demonstrations: there is none of {sentence}"):
         simulate(config, rng(experiment))
+
+
+@pytest.mark.parametrize(
+    ("simulate", "experiment", "given", "must"),
+    [
+        (style_transformation.simulate, "style_transformation", "demonstrations=over.csv", "{a: FILE, ...}"),
+        (obstacle_crossing.simulate, "obstacle_crossing", "demonstrations=[over.csv]", "{1: FILE, ...}"),
+        (reactive_learning.taught, "reactive_learning", "reactions=over.csv", "{far_tall_left: FILE, ...}"),
+        (letter_accuracy.simulate, "letter_accuracy", "demonstrations={a: letter.csv}", "a file or a list of files"),
+        (letter_accuracy.simulate, "letter_accuracy", "demonstrations=[[letter.csv]]", "a file or a list of files"),
+        (letter_accuracy.simulate, "letter_accuracy", "demonstrations=[null]", "a file or a list of files"),
+        (planar_skill.simulate, "planar_skill", "map.block_file={a: block.csv}", "a file or a list of files"),
+        (letter_accuracy.simulate, "letter_accuracy", "hand.letter=B", "one of A, a, z, l, k, w"),
+        (letter_accuracy.simulate, "letter_accuracy", "hand.letter=[A,B]", "one of A, a, z, l, k, w"),
+        (style_transformation.simulate, "style_transformation", "hand.targets=[w,7]", "a list of letters"),
+        (style_transformation.simulate, "style_transformation", "hand.base=B", "one of A, a, z, l, k, w"),
+        (bounded_tracking.simulate, "bounded_tracking", "hand.base=B", "one of a, w, z, k, l, A"),
+        (bounded_tracking.simulate, "bounded_tracking", "hand.letters=null", "a list of letters"),
+        (knowledge_reuse.simulate, "knowledge_reuse", "hand.sequence=[a,B]", "one of a, w, z, k, l, A"),
+    ],
+)
+def test_what_a_key_does_not_take_gets_one_sentence(simulate: Any, experiment: str, given: str, must: str) -> None:
+    chapter = {"planar_skill": "6", "reactive_learning": "7"}.get(experiment, "5")
+    name = {"planar_skill": "book", "reactive_learning": "frozen", "bounded_tracking": "pd", "knowledge_reuse": "kept"}
+    config = configured(chapter, experiment, name.get(experiment, "default"), given)
+    key = given.partition("=")[0]
+    with pytest.raises(InputError, match=rf"^{key} = .* is not allowed: it must be {re.escape(must)}$"):
+        simulate(config, *([rng(experiment)] if simulate.__name__ == "simulate" else []))
 
 
 def write_drawing(turn: float = 0.0) -> None:
