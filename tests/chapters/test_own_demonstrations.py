@@ -257,6 +257,20 @@ def test_a_drawing_of_ones_own_is_led_round_ones_own_block_after_following_the_r
     assert metrics["pauses_fewest_min"] == 1
 
 
+@pytest.mark.parametrize("size", [0.1, 1.0, 10.0])
+@pytest.mark.parametrize(("key", "file"), [("map.block_file", "block.csv"), ("map.block", "null")])
+def test_a_drawing_elsewhere_is_led_round_a_block_after_the_refusals(size: float, key: str, file: str) -> None:
+    write_drawing()
+    drawing = np.loadtxt("drawing.csv", delimiter=",")
+    np.savetxt("drawing.csv", np.column_stack([drawing[:, 0], (500, 300) + size * drawing[:, 1:]]), delimiter=",")
+    overrides = [f"map.block_file={file}"]
+    for named in (key, "reference.arc"):
+        with pytest.raises(InputError, match=rf"^{named}: .*; set planar_skill") as refused:
+            planar(*overrides)
+        overrides += str(refused.value).partition("; set ")[2].replace("planar_skill.", "").split()
+    assert planar_skill.measure(planar(*overrides)[1], None)["clearance_reference_min"] > 0
+
+
 @pytest.mark.parametrize(
     ("name", "text", "sentence"),
     [
