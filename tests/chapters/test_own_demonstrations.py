@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,14 @@ from cases import case, rng
 
 from dexrepro.case import generator
 from dexrepro.chapters.chapter5 import crossing, letters
+from dexrepro.chapters.chapter5.bounded_tracking import experiment as bounded_tracking
+from dexrepro.chapters.chapter5.knowledge_reuse import experiment as knowledge_reuse
+from dexrepro.chapters.chapter5.letter_accuracy import experiment as letter_accuracy
 from dexrepro.chapters.chapter5.obstacle_crossing import experiment as obstacle_crossing
 from dexrepro.chapters.chapter5.style_transformation import experiment as style_transformation
 from dexrepro.chapters.chapter6.planar_skill import experiment as planar_skill
-from dexrepro.chapters.chapter7 import skills
+from dexrepro.chapters.chapter7 import desk, skills
+from dexrepro.chapters.chapter7.reaching_demonstrations import experiment as reaching_demonstrations
 from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
 from dexrepro.errors import InputError
 from dexrepro.plan import plan_chapter
@@ -32,6 +37,7 @@ def recordings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, columns in {
         "letter": (20 + 10 * np.sin(2 * np.pi * progress), 40 * progress),
         "over": (12 * progress - 6, 0 * share, 5 * np.sin(np.pi * share)),
+        "back": (30 + 0 * share, 20 + 0 * share, 5 * np.sin(np.pi * share)),
     }.items():
         np.savetxt(f"{name}.csv", np.column_stack([0.7 * share, *columns]), delimiter=",")
 
@@ -77,12 +83,20 @@ def test_the_printed_amplitude_is_not_evaluated_where_it_is_not_defined() -> Non
         ("over.csv", r"demonstrations: they go from \(-6, 0\) to \(6, 0\) cm instead of from \(2.3, 0\) to \(20, 9\)"),
         ("letter.csv", "demonstrations: 'letter.csv': line 1 has 3 numbers; it must have time, x, y, z"),
         ("no*.csv", r"demonstrations: cannot read 'no\*.csv'"),
+        ("back.csv", r"demonstrations: their start and their goal are the same place, \(30, 20\) cm"),
     ],
 )
 def test_a_reach_that_cannot_be_used_gets_one_sentence(files: str, sentence: str) -> None:
     config = configured("7", "reaching_demonstrations", "corrected", f"demonstrations={files}")
     with pytest.raises(InputError, match=sentence):
         skills.demonstrate(config)
+
+
+@pytest.mark.parametrize("part", ["scene", "task"])
+def test_a_reach_to_where_it_begins_is_refused(part: str) -> None:
+    config = case("7", "fuzzy_generalisation", "main", f"shared.{part}.goal=${{shared.{part}.start}}")
+    with pytest.raises(InputError, match=rf"{part}\.goal = .* is not allowed: it must be another place than {part}"):
+        skills.reach(config, part)
 
 
 @pytest.mark.parametrize("goal", [(-6.0, 3.0), (30.0, 15.0), (1.0, -9.0)])
@@ -105,6 +119,16 @@ def test_a_reach_on_another_desk_is_learned_after_following_the_refusal(goal: tu
     ordinary, reactions = attempt()
     assert ordinary[:, -1] == pytest.approx(np.array([[40 + goal[0], 10 + goal[1], 0.0]] * len(ordinary)), abs=0.2)
     assert np.isfinite(reactions).all()
+
+
+def test_the_arm_stands_before_a_reach_elsewhere_and_is_not_shown_where_that_is_too_long() -> None:
+    elsewhere = skills.moved_scene((30, 20), (50, 30)).split()
+    config = case("7", "reaching_demonstrations", "corrected", *elsewhere)
+    assert len(reaching_demonstrations.simulate(config, rng("reaching_demonstrations")).images) == 5
+    assert np.array_equal(desk.before_arm(np.ones(3), case("7", "reaching_demonstrations", "corrected")), np.ones(3))
+    config = case("7", "reaching_demonstrations", "corrected", "shared.scene.goal=[80,36]", "shared.scene.far=[40,18]")
+    with pytest.warns(UserWarning, match=r"the arm is not shown: .* out of the arm's reach of 0\.267 m"):
+        assert not reaching_demonstrations.simulate(config, rng("reaching_demonstrations")).images
 
 
 @pytest.mark.parametrize(
@@ -173,6 +197,34 @@ def test_a_demonstration_that_nothing_learns_from_is_refused(
         simulate(config, rng(experiment))
 
 
+@pytest.mark.parametrize(
+    ("simulate", "experiment", "given", "must"),
+    [
+        (style_transformation.simulate, "style_transformation", "demonstrations=over.csv", "{a: FILE, ...}"),
+        (obstacle_crossing.simulate, "obstacle_crossing", "demonstrations=[over.csv]", "{1: FILE, ...}"),
+        (reactive_learning.taught, "reactive_learning", "reactions=over.csv", "{far_tall_left: FILE, ...}"),
+        (letter_accuracy.simulate, "letter_accuracy", "demonstrations={a: letter.csv}", "a file or a list of files"),
+        (letter_accuracy.simulate, "letter_accuracy", "demonstrations=[[letter.csv]]", "a file or a list of files"),
+        (letter_accuracy.simulate, "letter_accuracy", "demonstrations=[null]", "a file or a list of files"),
+        (planar_skill.simulate, "planar_skill", "map.block_file={a: block.csv}", "a file or a list of files"),
+        (letter_accuracy.simulate, "letter_accuracy", "hand.letter=B", "one of A, a, z, l, k, w"),
+        (letter_accuracy.simulate, "letter_accuracy", "hand.letter=[A,B]", "one of A, a, z, l, k, w"),
+        (style_transformation.simulate, "style_transformation", "hand.targets=[w,7]", "a list of letters"),
+        (style_transformation.simulate, "style_transformation", "hand.base=B", "one of A, a, z, l, k, w"),
+        (bounded_tracking.simulate, "bounded_tracking", "hand.base=B", "one of a, w, z, k, l, A"),
+        (bounded_tracking.simulate, "bounded_tracking", "hand.letters=null", "a list of letters"),
+        (knowledge_reuse.simulate, "knowledge_reuse", "hand.sequence=[a,B]", "one of a, w, z, k, l, A"),
+    ],
+)
+def test_what_a_key_does_not_take_gets_one_sentence(simulate: Any, experiment: str, given: str, must: str) -> None:
+    chapter = {"planar_skill": "6", "reactive_learning": "7"}.get(experiment, "5")
+    name = {"planar_skill": "book", "reactive_learning": "frozen", "bounded_tracking": "pd", "knowledge_reuse": "kept"}
+    config = configured(chapter, experiment, name.get(experiment, "default"), given)
+    key = given.partition("=")[0]
+    with pytest.raises(InputError, match=rf"^{key} = .* is not allowed: it must be {re.escape(must)}$"):
+        simulate(config, *([rng(experiment)] if simulate.__name__ == "simulate" else []))
+
+
 def write_drawing(turn: float = 0.0) -> None:
     """A drawing down, a pause, and across a block, and that block; about the origin, turned by an angle [rad]."""
     share = np.linspace(0, 1, 80)
@@ -203,6 +255,20 @@ def test_a_drawing_of_ones_own_is_led_round_ones_own_block_after_following_the_r
     assert metrics["clearance_new_max"] < 0 < metrics["clearance_reference_min"]
     assert "segmentation_error_max" not in metrics  # nobody says where the person paused
     assert metrics["pauses_fewest_min"] == 1
+
+
+@pytest.mark.parametrize("size", [0.1, 1.0, 10.0])
+@pytest.mark.parametrize(("key", "file"), [("map.block_file", "block.csv"), ("map.block", "null")])
+def test_a_drawing_elsewhere_is_led_round_a_block_after_the_refusals(size: float, key: str, file: str) -> None:
+    write_drawing()
+    drawing = np.loadtxt("drawing.csv", delimiter=",")
+    np.savetxt("drawing.csv", np.column_stack([drawing[:, 0], (500, 300) + size * drawing[:, 1:]]), delimiter=",")
+    overrides = [f"map.block_file={file}"]
+    for named in (key, "reference.arc"):
+        with pytest.raises(InputError, match=rf"^{named}: .*; set planar_skill") as refused:
+            planar(*overrides)
+        overrides += str(refused.value).partition("; set ")[2].replace("planar_skill.", "").split()
+    assert planar_skill.measure(planar(*overrides)[1], None)["clearance_reference_min"] > 0
 
 
 @pytest.mark.parametrize(

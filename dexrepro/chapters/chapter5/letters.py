@@ -2,20 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from dexrepro.chapters.demonstrations import recorded
+from dexrepro.errors import refused
 from dexrepro.experiment import Config
-from dexrepro.humans.handwriting import smoothed, write
+from dexrepro.humans.handwriting import LETTERS, smoothed, write
 from dexrepro.primitives import DMP, Demonstration, ExtendedKernels, GaussianKernels, Scaling, SpringDamper
+
+
+def check_letter(letter: Any, there: Iterable[str], config: Config) -> None:
+    """Refuse a letter that is not there, by the key of the hand that names it."""
+    if letter not in (there := [*there]):
+        of = {key: value if isinstance(value, list) else [value] for key, value in config.hand.items()}
+        keys = [key for key, value in of.items() if letter in value or letter == value]
+        raise refused(f"hand.{keys[-1]}", letter, f"be one of {', '.join(map(str, there))}")
+
+
+def named(key: str, config: Config, least: int = 0) -> list[str]:
+    """Letters of the hand under a key. Raises InputError for what is no list of ``least`` letters or more."""
+    value = config.hand[key]
+    if not isinstance(value, list | str) or not all(isinstance(name, str) for name in value) or len(value) < least:
+        raise refused(f"hand.{key}", value, "be a list of letters")
+    return [*value]
 
 
 def demonstration(letter: str, config: Config, rng: np.random.Generator) -> Demonstration:
     """One handwritten letter [cm]; the size is moved by the configured perturbation."""
     hand = config.hand
+    check_letter(letter, LETTERS, config)
     time = np.linspace(0.0, config.dmp.duration, config.dmp.samples)
     size = hand.size * (1 + config.perturbation)
     return Demonstration.of(time, write(letter, time, size, hand.jitter, hand.tremor, hand.cutoff, rng))

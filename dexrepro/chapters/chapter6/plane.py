@@ -112,22 +112,38 @@ def check_arc(config: Config, path: Array) -> None:
     leave, resume = _passage(config, preferred_arc(config), path)
     if np.linalg.norm(block.vertices - given.centre, axis=1).max() <= given.radius and 0 <= leave < resume:
         return
-    centre = block.centroid.round(2)
-    radius = round(float(np.linalg.norm(block.vertices - centre, axis=1).max()) + 1.0, 2)
+    centre = _rounded(block.centroid)
+    size = float(np.linalg.norm(block.vertices - centre, axis=1).max())
+    radius = float(_rounded(size + min(1.0, size / 2)))
     inside = np.flatnonzero(np.linalg.norm(path - centre, axis=1) < radius)
     if not len(inside) or inside[0] == 0 or inside[-1] == len(path) - 1:
+        key = "map.block_file" if config.map.get("block_file") else "map.block"
+        start, middle, goal = path[0], path[len(path) // 2], path[-1]
+        room = min(float(np.linalg.norm(middle - end)) for end in (start, goal))
+        vertices = _rounded(middle + min(1.0, room / 5 / size) * (block.vertices - block.centroid))
+        moved = f"planar_skill.map.block={vertices.tolist()}".replace(", ", ",")
+        way = [f"({x:.4g}, {y:.4g})" for x, y in (centre, start, middle, goal)]
         raise InputError(
-            f"map: the new block about ({centre[0]:g}, {centre[1]:g}) cm must lie across the second of the two "
-            "sub-skills into which the demonstrations are cut, away from its ends"
+            f"{key}: the new block about {way[0]} cm must lie across the second of the two sub-skills into which the "
+            f"demonstrations are cut, from {way[1]} over {way[2]} to {way[3]} cm, away from its ends; set {moved}"
+            + " planar_skill.map.block_file=null"
+            * (key == "map.block_file")
         )
     first, last = (np.degrees(np.arctan2(*(path[k] - centre)[::-1])) for k in inside[[0, -1]])
     turns = [[first, first + (last - first) % 360], [first, first - (first - last) % 360]]
     angles = max(turns, key=lambda turn: clearance(arc(centre, radius, *np.radians(turn)), old))
-    words = {"centre": centre.tolist(), "radius": radius, "angles": [round(float(angle), 1) for angle in angles]}
+    words = {"arc.centre": centre.tolist(), "arc.radius": radius, "arc.angles": [round(float(a), 1) for a in angles]}
+    gap = float(_rounded(0.55 * radius))
+    words |= {key: gap for key in ("gap_in", "gap_out") if config.reference[key] > gap}
     raise InputError(
         "reference.arc: it does not lead round the new block; set "
-        + " ".join(f"planar_skill.reference.arc.{key}={value}".replace(", ", ",") for key, value in words.items())
+        + " ".join(f"planar_skill.reference.{key}={value}".replace(", ", ",") for key, value in words.items())
     )
+
+
+def _rounded(values: Any) -> Array:
+    """Values to six digits, as they are offered for a key."""
+    return np.vectorize(lambda value: float(f"{value:.6g}"))(values)
 
 
 def extended_paths(config: Config, lesson: Lesson, steps: int) -> list[Trajectory]:

@@ -30,6 +30,7 @@ from dexrepro.robots.pen_arm import DARK, gripper, pen_arm, pen_arm_angles, pen_
 
 BOARD = (0.13, 0.21)  # m, depth and width; printed in Sect. 7.4
 CUBE = 0.018  # m, edge of the carried cube
+MIDDLE = (11.15, 4.5)  # cm, of the demonstrated reach, before the arm
 WIDE = Camera(target=(0.14, 0.0, -0.02), distance=0.42, yaw=62.0, pitch=-20.0)
 JAWS = tuple(Shape("box", (0.022, 0.004, 0.016), Pose((-0.002, side, 0.0)), DARK) for side in (-0.012, 0.012))
 CAMERA = Camera(target=(0.14, 0.0, -0.045), distance=0.33, yaw=62.0, pitch=-24.0)
@@ -47,6 +48,12 @@ def to_board(points: Array) -> Array:
     return np.stack(
         [10.5 - 100 * points[..., 1], 100 * (points[..., 0] - 0.09), 100 * (points[..., 2] + 0.10)], axis=-1
     )
+
+
+def before_arm(points: Array, config: Config) -> Array:
+    """Board coordinates (..., 3) [cm] as the arm has them that stands where it has the reach before it."""
+    shift = np.mean([config.scene.start, config.scene.goal], axis=0) - MIDDLE
+    return points - np.append(shift, 0.0)
 
 
 class Reference(Sampled):
@@ -99,10 +106,11 @@ def demonstration_scene(config: Config) -> World:
     """The arm with a finger handle that a person moves past the tall stack at the far place."""
     handle = replace(gripper(), name="handle", shapes=(Shape("cylinder", (0.012, 0.01), colour=DARK),))
     world = World(gravity=(0.0, 0.0, 0.0))
-    world.add_arm("arm", pen_arm(handle), pen_arm_angles(to_robot(np.array([*config.scene.start, 0.0]))))
-    furnish(world, Obstacle(config.scene.far, config.scene.tall, config.scene.cube), cube=False)
-    for name, place in (("start", config.scene.start), ("goal", config.scene.goal)):
-        x, y, _ = to_robot(np.array([*place, 0.0]))
+    places = {name: before_arm(np.array([*config.scene[name], 0.0]), config) for name in ("start", "goal", "far")}
+    world.add_arm("arm", pen_arm(handle), pen_arm_angles(to_robot(places["start"])))
+    furnish(world, Obstacle(places["far"][:2].tolist(), config.scene.tall, config.scene.cube), cube=False)
+    for name in ("start", "goal"):
+        x, y, _ = to_robot(places[name])
         world.add_body(name, [Shape("cylinder", (0.006, 0.001), colour=BLUE)], (x, y, -0.1095), collides=False)
     return world
 

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dexrepro.arrays import Array
-from dexrepro.chapters.demonstrations import recorded
+from dexrepro.chapters.demonstrations import check_by_name, recorded
 from dexrepro.control.contract import printed_forms
-from dexrepro.errors import InputError, nearest
+from dexrepro.errors import InputError, nearest, refused
 from dexrepro.experiment import Config
 from dexrepro.humans.muscle import Muscle, low_pass
 from dexrepro.humans.reaching import Obstacle, Reach, Reacher
@@ -50,9 +50,12 @@ class Condition:
         return {"distance": self.distance, "height": self.obstacle.height, "direction": self.direction}
 
 
-def reach(config: Config) -> Reach:
-    """The task of the demonstrations."""
-    return Reach(config.scene.start, config.scene.goal)
+def reach(config: Config, part: str = "scene") -> Reach:
+    """The task of the demonstrations, or the new ``task``."""
+    start, goal = config[part].start, config[part].goal
+    if start == goal:
+        raise refused(f"{part}.goal", goal, f"be another place than {part}.start")
+    return Reach(start, goal)
 
 
 def conditions(config: Config) -> list[Condition]:
@@ -112,6 +115,8 @@ def recorded_reaches(config: Config, shape: tuple[int, ...]) -> Array:
         raise InputError("demonstrations: their starts, or their goals, lie more than 1 cm from their mean")
     if np.linalg.norm(ends - wanted, axis=-1).max() > 1.0:
         start, goal = ends.mean(axis=0)[:, :2]
+        if _point(start) == _point(goal):
+            raise InputError(f"demonstrations: their start and their goal are the same place, {_point(start)} cm")
         raise InputError(
             f"demonstrations: they go from {_point(start)} to {_point(goal)} cm instead of from {_point(wanted[0])} to "
             f"{_point(wanted[1])} cm; set {moved_scene(start, goal)}"
@@ -122,6 +127,7 @@ def recorded_reaches(config: Config, shape: tuple[int, ...]) -> Array:
 def with_recorded_reactions(config: Config, reactions: Array) -> Array:
     """The same (conditions, repetitions, N, 3) [cm] with the user's own in the place of some, by condition."""
     known = {"_".join(c.labels): index for index, c in enumerate(conditions(config))}
+    check_by_name(config.reactions, "reactions", next(iter(known)))
     for name, files in (config.reactions or {}).items():
         if name not in known:
             raise InputError(f"reactions: unknown condition '{name}': {nearest(name, known)}")
@@ -275,7 +281,7 @@ class NewTask:
     def __init__(self, config: Config, skills: Skills) -> None:
         self.config, self.skills, task = config, skills, config.task
         self.printed = printed_forms(task.printed, ("scaling", "kinematics"))
-        self.reach = Reach(task.start, task.goal)
+        self.reach = reach(config, "task")
         self.obstacle = Obstacle(task.obstacle, task.height, config.scene.cube)
         self.distance = float(np.hypot(*np.subtract(task.obstacle, task.start)))
         self.ratio = self.reach.length / skills.reach.length

@@ -37,7 +37,10 @@ def simulate(config: Config, rng: Rng) -> Recording:
 def learned_path(letter: str, config: Config, rng: Rng) -> Any:
     """What the primitives make of a letter [cm], at the arm's pace: an IDMP grown from the letter a, or a DMP."""
     hand, training = rng("demonstration"), config.training
-    shown = {name: letters.demonstration(name, config, hand) for name in config.hand.letters}
+    known, targets = letters.named("letters", config), letters.named("targets", config)
+    for name in (letter, config.hand.base):
+        letters.check_letter(name, known, config)
+    shown = {name: letters.demonstration(name, config, hand) for name in known}
     kernels = letters.kernels(config.kernels.count, config, None)
 
     def fit(name: str) -> DMP:
@@ -45,8 +48,8 @@ def learned_path(letter: str, config: Config, rng: Rng) -> Any:
         options = {"rest": training.rest, "rcond": training.rcond}
         return DMP.fit(shown[name], kernels, letters.system(config), decay, scaling, **options)
 
-    primitive = fit(config.hand.base if letter in config.hand.targets else letter)
-    if letter in config.hand.targets:
+    primitive = fit(config.hand.base if letter in targets else letter)
+    if letter in targets:
         features = letters.features(kernels, config.features.count, config, rng("features"))
         options = {"rest": training.rest, "rcond": training.rcond, "relearn_old": training.relearn_old}
         primitive = extend(primitive, features, shown[letter], **options)

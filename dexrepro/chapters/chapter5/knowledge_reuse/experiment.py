@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from dexrepro.arrays import Rng
-from dexrepro.chapters.chapter5 import pen
+from dexrepro.chapters.chapter5 import letters, pen
 from dexrepro.chapters.chapter5.bounded_tracking import experiment as bounded_tracking
 from dexrepro.control.contract import build
 from dexrepro.experiment import Config, Metrics, Recording
@@ -15,7 +15,7 @@ from dexrepro.experiment import Config, Metrics, Recording
 def simulate(config: Config, rng: Rng) -> Recording:
     nominal, generator = pen.model(config), rng("nodes")
     centres, weights, rows, steps, status = np.empty((0, 6)), None, [], 0, "finished"
-    for index, letter in enumerate(config.hand.sequence):
+    for index, letter in enumerate(letters.named("sequence", config, least=1)):
         path = bounded_tracking.learned_path(letter, config, rng)
         target = pen.reference(pen.on_paper(path), config.arm.step)
         added = config.network.nodes if index == 0 else config.network.added

@@ -55,9 +55,9 @@ def simulate(config: Config, rng: Rng) -> Recording:
 
 
 def _demonstrations(config: Config, hand: np.random.Generator) -> dict[str, Demonstration]:
-    names = (config.hand.base, *config.hand.targets)
+    names = (config.hand.base, *letters.named("targets", config, least=1))
     own = by_name(config.demonstrations, names)
-    return {name: letters.demonstrations(name, own.get(name), 1, config, hand)[0] for name in names}
+    return {name: letters.demonstrations(name, own.get(str(name)), 1, config, hand)[0] for name in names}
 
 
 def _refined(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,10 @@ def simulate(config: Config, rng: Rng) -> Recording:
         steps=len(learned.primitive.time),
     )
     if config.pictures:
-        recording.images = photographs(config, reactions)
+        try:
+            recording.images = photographs(config, reactions)
+        except ValueError as error:  # of a reach that is longer than the arm
+            warnings.warn(f"the arm is not shown: {error}", stacklevel=2)
     return recording
 
 
@@ -50,7 +54,7 @@ def photographs(config: Config, reactions: np.ndarray) -> dict[str, Any]:
     It moves away where half the height over the obstacle is reached.
     """
     number = [c.labels for c in skills.conditions(config)].index(("far", "tall", "forward"))
-    path = reactions[number, 0]
+    path = desk.before_arm(reactions[number, 0], config)
     passage = skills.reach(config).moment(config.scene.far)
     half = int(np.argmax(path[:, 2] > path[:, 2].max() / 2))
     instants = {"platform": 0.0, "a": 0.0, "b": half / (len(path) - 1), "c": passage, "d": 1.0}
