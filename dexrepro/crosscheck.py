@@ -86,9 +86,7 @@ def compare(plan: Plan, folder: Path) -> Comparison:
     both = [name for name in baseline.metrics if name in made]
     outside = [name for name in both if not agrees(made[name], baseline.metrics[name])]
     spreads = _spreads(plan.experiment, outside)
-    differences = [
-        Difference(name, baseline.metrics[name]["value"], made[name], spreads[name]) for name in outside
-    ]
+    differences = [Difference(name, baseline.metrics[name]["value"], made[name], spreads[name]) for name in outside]
     verdicts = {claim.id: claim.evaluate(made).verdict for claim in chapters.load(plan.chapter).claims}
     claims = {
         key: (verdict, verdicts[key])

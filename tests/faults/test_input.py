@@ -23,7 +23,7 @@ HUGE = "9" * 400
         ("~seed", "'seed' cannot be left out"),
         ("~results", "'results' cannot be left out"),
         ("~decay", "experiment 'decay' has no block"),
-        ("decay=5", "experiment 'decay' has no block"),
+        ("decay=5", "decay = 5 is not allowed: it must hold keys with values"),
         (f"seed={HUGE}", "seed = 9999"),
         (f"decay.start={HUGE}", "decay.start = 9999"),
         (f"decay.start=-{HUGE}", "decay.start = -9999"),
