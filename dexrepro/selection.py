@@ -163,11 +163,14 @@ def check_owner(overrides: Iterable[str], numbers: Sequence[str]) -> None:
 
 
 def of_chapter(number: str, numbers: Sequence[str], overrides: Sequence[str]) -> list[str]:
-    """The overrides for one of several chapters: ``only=a,b`` as a list without the experiments of the others."""
+    """The overrides for one of several chapters: without values of the experiments of the others, and ``only=a,b`` as a
+    list without these."""
     others = {name for other in numbers if other != number for name in chapters.names(other)}
     result = []
     for text in overrides:
         key, _, value = text.partition("=")
+        if key.lstrip("+~").partition(".")[0] in others:
+            continue
         if key == "only" and "," in value:
             text = f"only=[{','.join(name for name in listed(value) if name not in others)}]"
         result.append(text)

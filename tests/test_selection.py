@@ -23,6 +23,8 @@ def test_experiments_of_several_chapters_go_each_to_its_own() -> None:
 
 def test_a_name_that_no_chapter_has_is_left_to_be_refused() -> None:
     assert of_chapter("1", ["1", "6"], ["only=[lyapunof,keep_out]"]) == ["only=[lyapunof]"]
+    both = ["keep_out.step=1", "+hand_over.cases.a.step=2", "shared.step=3"]
+    assert of_chapter("1", ["1", "6"], both) == both[1:], "a value reaches the chapter whose experiment has it"
 
 
 NAMES = ["letter (1).csv", "Übung_größe.csv", "a=b.csv", "trial[1].csv", "Öl & Büro (neu)/x.csv", "it's #1.csv",

@@ -35,7 +35,10 @@ def tune_command(options: argparse.Namespace) -> int:
         return OK
     made = tune.words_of(case) if options.update else []
     if made and (other := [word for word in words if not word.startswith(("case=", "results=", "workers="))]):
-        raise InputError(f"{other[0]}: the search for {case} is shipped and is made again as it was, {' '.join(made)}")
+        raise InputError(
+            f"{other[0]}: the search for {case} is shipped and is made again as it was, {' '.join(made)}; "
+            f"for another, delete {tune.shipped(case)} first"
+        )
     known, rest = _search_words([*made, *words], "tune")
     experiment = known["case"].partition(".")[0]
     given, parameters = _given(rest, [experiment])

@@ -22,7 +22,9 @@ from dexrepro.chapters.chapter7 import desk, skills
 from dexrepro.chapters.chapter7.reaching_demonstrations import experiment as reaching_demonstrations
 from dexrepro.chapters.chapter7.reactive_learning import experiment as reactive_learning
 from dexrepro.errors import InputError
+from dexrepro.humans.handwriting import LETTERS
 from dexrepro.plan import plan_chapter
+from dexrepro.provenance import provenance
 
 
 def configured(chapter: str, experiment: str, name: str, *overrides: str) -> Any:
@@ -285,3 +287,8 @@ def test_a_map_that_cannot_be_used_gets_one_sentence(name: str, text: str, sente
     Path(name).write_text(text)
     with pytest.raises(InputError, match=sentence):
         planar()
+
+
+@pytest.mark.parametrize("key", ["letter_accuracy.hand.letter", "style_transformation.hand.base"])
+def test_the_configuration_names_the_letters_that_the_synthetic_hand_writes(key: str) -> None:
+    assert provenance("5")[key].text.endswith(f"the synthetic hand writes {', '.join(LETTERS)}")
